@@ -1,0 +1,71 @@
+"""The impulse J_i that gravity and friction hand over to a cell in one step, and which cells are slow.
+
+The total acceleration g(u) = sin zeta - sgn(u) R of (1) is written `s - sgn(u) R` here; g is not gravity.
+Arrays h, u are ghosted, shape (nx + 2,); all others have shape (nx,).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel import kernel
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@kernel
+def acceleration(v: float, s: float, R: float) -> float:
+    """g(v) = s - sgn(v) R for v != 0."""
+    return s - R if v > 0.0 else s + R
+
+
+@kernel
+def static_acceleration(slope: float, s: float, R: float) -> float:
+    """g~ of (21), (22): what holds the slope beta h_x, as far as friction reaches."""
+    return min(s + R, max(slope, s - R))
+
+
+@kernel
+def sliding(h: Array, u: Array, h1: Array, s: float, R: float, beta: float, dx: float, dt: float, J: Array) -> None:
+    """Scheme 1: J = dt g h^{n+1}, with g~ where u = 0."""
+    for i in range(J.size):
+        if u[i + 1] == 0.0:
+            g = static_acceleration(beta * ((h[i + 2] - h[i]) / (2.0 * dx)), s, R)
+        else:
+            g = acceleration(u[i + 1], s, R)
+        J[i] = dt * g * h1[i]
+
+
+@kernel
+def find_slow(q: Array, h1: Array, s: float, R: float, dt: float, slow: Flags) -> None:
+    """Slow cells: |q| < |dt g(q) h^{n+1}|, where h1 is the candidate of the balanced flux; q = 0 is slow if forced."""
+    for i in range(q.size):
+        if q[i] == 0.0:
+            slow[i] = s != 0.0 or R != 0.0
+        else:
+            slow[i] = abs(q[i]) < abs(dt * acceleration(q[i], s, R) * h1[i])
+
+
+@kernel
+def stopping(
+    h: Array, q: Array, h1: Array, h1_candidate: Array, slow: Flags,
+    s: float, R: float, beta: float, dx: float, dt: float, J: Array,
+) -> None:  # fmt: skip
+    """Schemes 2 and 3: slow cells blend static and sliding friction, the others slide.
+
+    In a slow cell q^n + mu dt g h^{n+1} = 0 by the choice of mu, so that its impulse is
+    (1 - mu) dt g~ (h_{i+1} + 2 h_i + h_{i-1})/4 - q^n.
+    """
+    for i in range(J.size):
+        if slow[i]:
+            mu = 0.0
+            if q[i] != 0.0:
+                mu = -q[i] / (dt * acceleration(q[i], s, R) * h1_candidate[i])
+            g = static_acceleration(beta * ((h[i + 2] - h[i]) / (2.0 * dx)), s, R)
+            J[i] = (1.0 - mu) * (dt * g * (0.25 * ((h[i + 2] + h[i]) + 2.0 * h[i + 1]))) - q[i]
+        elif q[i] == 0.0:
+            J[i] = 0.0
+        else:
+            J[i] = dt * acceleration(q[i], s, R) * h1[i]

@@ -1,0 +1,77 @@
+"""The arrays of one step that both wings share, from U^n to U^{n+1}."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel import kernel
+from ..model.boundary import extend
+from ..scene import Scene
+from .interface import Faces, upwind
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Stages:
+    """What one step hands from line to line; ghosted arrays have shape (nx + 2,), faces (nx + 1,), cells (nx,).
+
+    Attributes:
+        h, u: Height and velocity at level n, ghosted.
+        q: Momentum at level n, cells.
+        upwind, balanced: Face states (19) and (25).
+        F1, F2: Flux of the upwind states, faces.
+        B1, B2: Flux of the balanced states, faces.
+        h1_candidate: h^{n+1} as the balanced flux would give it, cells.
+        slow: Cells that take the first branch of schemes 2 and 3, ghosted.
+        at_left, at_right: Whether a cell takes the balanced flux at its left and right wall, cells.
+        h1: h^{n+1}, cells.
+        qhat: Momentum after transport, before the impulse, cells.
+        J: Impulse of gravity and friction, cells.
+        q1: q^{n+1}, cells.
+    """
+
+    h: Array
+    u: Array
+    q: Array
+    upwind: Faces
+    balanced: Faces
+    F1: Array
+    F2: Array
+    B1: Array
+    B2: Array
+    h1_candidate: Array
+    slow: Flags
+    at_left: Flags
+    at_right: Flags
+    h1: Array
+    qhat: Array
+    J: Array
+    q1: Array
+
+    @classmethod
+    def empty(cls, nx: int) -> Stages:
+        """Room for a step of `nx` cells."""
+        h, u = np.zeros(nx + 2), np.zeros(nx + 2)
+        faces = [np.zeros(nx + 1) for _ in range(4)]
+        flags = [np.zeros(nx + 2, dtype=bool), np.zeros(nx, dtype=bool), np.zeros(nx, dtype=bool)]
+        cells = [np.zeros(nx) for _ in range(4)]
+        return cls(h, u, np.zeros(nx), upwind(h, u), Faces.empty(nx), *faces, np.zeros(nx), *flags, *cells)
+
+    def begin(self, scene: Scene, h: Array, q: Array) -> None:
+        """Take over U^n = (h, q) and fill the ghosts; dry cells are at rest."""
+        self.q[:] = q
+        split(h, q, self.h, self.u)
+        extend(scene.boundary, self.h, self.u)
+
+
+@kernel
+def split(h: Array, q: Array, h_ghosted: Array, u_ghosted: Array) -> None:
+    """u = q/h where there is mass, 0 where there is none, into the inner cells of ghosted arrays."""
+    for i in range(h.size):
+        h_ghosted[i + 1] = h[i]
+        u_ghosted[i + 1] = q[i] / h[i] if h[i] > 0.0 else 0.0

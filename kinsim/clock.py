@@ -1,0 +1,66 @@
+"""The clock: when the states are."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal, Protocol
+
+from pydantic import Field
+
+from .value import Number, Whole, kind, value
+
+Positive = Annotated[Number, Field(gt=0)]
+
+
+class Clock(Protocol):
+    """Gives the next step from the time and the fastest particle; None when the run is over."""
+
+    def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None: ...
+    def time_after(self, step: int, t: float, dt: float) -> float: ...
+    def progress(self, step: int, t: float) -> float: ...
+
+
+@value
+class Fixed:
+    """`steps` steps of length `dt` (dimensionless time)."""
+
+    dt: Positive
+    steps: Annotated[Whole, Field(ge=1)]
+    kind: Literal["fixed"] = kind("fixed")
+
+    def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
+        """dt, `steps` times."""
+        return self.dt if step < self.steps else None
+
+    def time_after(self, step: int, t: float, dt: float) -> float:
+        """The time after step number `step`, without summed rounding."""
+        return step * self.dt
+
+    def progress(self, step: int, t: float) -> float:
+        """The share that is done."""
+        return step / self.steps
+
+
+@value
+class Courant:
+    """Steps with speed dt/dx = `number`, speed as in (28); the last one lands on the time `end`."""
+
+    number: Positive
+    end: Positive
+    kind: Literal["courant"] = kind("courant")
+
+    def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
+        """number dx / speed, or what is left until the end."""
+        left = self.end - t
+        if left <= 0.0:
+            return None
+        dt = self.number * dx / speed if speed > 0.0 else math.inf
+        return left if dt >= left else dt
+
+    def time_after(self, step: int, t: float, dt: float) -> float:
+        """t + dt, and the end exactly after the last step."""
+        return self.end if dt >= self.end - t else t + dt
+
+    def progress(self, step: int, t: float) -> float:
+        """The share that is done."""
+        return t / self.end

@@ -1,0 +1,85 @@
+"""The one decorator for compiled functions.
+
+numba keeps compiled code on disk and trusts it as long as the file of the function itself is unchanged; a helper
+edited in another file would leave old numbers behind. Here the stamp covers every kernel source of the package, and
+the code is kept in the user's cache folder, so that a package folder that cannot be written is no obstacle.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+import platformdirs
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+PACKAGE = Path(__file__).parent
+
+
+@cache
+def source_stamp() -> str:
+    """A hash of every source file of the package that holds kernels."""
+    digest = hashlib.sha256(numba.__version__.encode())
+    for path in sorted(PACKAGE.rglob("*.py")):
+        text = path.read_bytes()
+        if b"@kernel" in text:
+            digest.update(path.relative_to(PACKAGE).as_posix().encode() + b"\0" + text)
+    return digest.hexdigest()
+
+
+@cache
+def cache_folder() -> str:
+    """Where compiled kernels are kept: KINSIM_CACHE_DIR, else the user's cache folder, else a temporary one."""
+    chosen = Path(os.environ.get("KINSIM_CACHE_DIR") or platformdirs.user_cache_path("kinsim")) / "kernels"
+    try:
+        chosen.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=chosen).close()
+    except OSError:
+        chosen = Path(tempfile.mkdtemp(prefix="kinsim-kernels-"))
+    return str(chosen)
+
+
+class _Locator(_CacheLocator):  # type: ignore[misc]
+    """Tells numba where a kernel's code is kept and when it is out of date."""
+
+    def __init__(self, file: str) -> None:
+        self._file = file
+
+    def get_cache_path(self) -> str:
+        return cache_folder()
+
+    def get_source_stamp(self) -> str:
+        return source_stamp()
+
+    def get_disambiguator(self) -> str:
+        return hashlib.sha256(self._file.encode()).hexdigest()[:12]
+
+    @classmethod
+    def from_function(cls, py_func: Callable[..., Any], py_file: str) -> _Locator:
+        return cls(py_file)
+
+
+class _Keep(CompileResultCacheImpl):  # type: ignore[misc]
+    _locator_classes = (_Locator,)
+
+
+class _Cache(FunctionCache):  # type: ignore[misc]
+    _impl_class = _Keep
+
+
+def kernel(function: F) -> F:
+    """Compile `function` when it is first called, and keep the code on disk.
+
+    Kernels take arrays and scalars and write into arrays they are given. Division by zero gives infinity, as in numpy.
+    """
+    dispatcher = numba.njit(error_model="numpy")(function)
+    dispatcher._cache = _Cache(function)
+    return dispatcher  # type: ignore[no-any-return]

@@ -1,0 +1,1 @@
+"""The macroscopic wing: the same step with closed-form half-range moments."""

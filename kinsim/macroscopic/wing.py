@@ -1,0 +1,36 @@
+"""The macroscopic wing: fluxes from closed-form half-range moments, and no density at all."""
+
+from __future__ import annotations
+
+from ..balance.interface import Faces
+from ..balance.stages import Array, Stages
+from ..scene import Scene
+from .half_moments import flux_closed
+
+
+class ClosedForm:
+    """What a step asks of a wing, answered in closed form."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._beta = scene.beta
+
+    def equilibrium(self, now: Stages) -> None:
+        """M of (12) is known without being formed."""
+
+    def upwind_flux(self, now: Stages) -> None:
+        """F of (24)."""
+        self._flux(now.upwind, now.F1, now.F2)
+
+    def balanced_flux(self, now: Stages) -> None:
+        """F~ of section 3.2."""
+        self._flux(now.balanced, now.B1, now.B2)
+
+    def transport(self, now: Stages, lam: float) -> None:
+        """There is no density to transport."""
+
+    def force(self, now: Stages) -> float:
+        """There is no density to shift, and none is lost."""
+        return 0.0
+
+    def _flux(self, at: Faces, F1: Array, F2: Array) -> None:
+        flux_closed(at.h_left, at.u_left, at.h_right, at.u_right, self._beta, F1, F2)

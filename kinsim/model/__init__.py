@@ -1,0 +1,1 @@
+"""What the paper assumes: cells, chute, friction, heap, boundary."""

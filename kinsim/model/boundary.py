@@ -1,0 +1,42 @@
+"""The two ends of the domain: what a ghost cell holds."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+End = Literal["open", "wall"]
+Boundary = Literal["open", "wall", "periodic"] | tuple[End, End]
+
+EXPLAINED = {
+    "open": "copies the outermost cell (zero gradient)",
+    "wall": "mirrors the outermost cell, so that nothing passes",
+    "periodic": "continues at the other end",
+}
+
+
+def ends(boundary: Boundary) -> tuple[str, str]:
+    """The kinds of the left and the right end."""
+    return (boundary, boundary) if isinstance(boundary, str) else boundary
+
+
+def extend(boundary: Boundary, h: NDArray[np.float64], u: NDArray[np.float64]) -> None:
+    """Fill the ghost cells h[0], h[-1], u[0], u[-1] of arrays of shape (nx + 2,) in place."""
+    left, right = ends(boundary)
+    _fill(left, h, u, 0, 1, -2)
+    _fill(right, h, u, -1, -2, 1)
+
+
+def _fill(kind: str, h: NDArray[np.float64], u: NDArray[np.float64], ghost: int, inner: int, across: int) -> None:
+    source = across if kind == "periodic" else inner
+    h[ghost] = h[source]
+    u[ghost] = -u[source] if kind == "wall" else u[source]
+
+
+def extend_flag(boundary: Boundary, flag: NDArray[np.bool_]) -> None:
+    """Fill the ghosts of a cell property of shape (nx + 2,) that has no sign: a ghost counts as the cell it shows."""
+    left, right = ends(boundary)
+    flag[0] = flag[-2 if left == "periodic" else 1]
+    flag[-1] = flag[1 if right == "periodic" else -2]

@@ -1,0 +1,35 @@
+"""The cells of the x-axis."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from ..value import Number, Whole, value
+
+
+@value
+class Cells:
+    """`count` equal cells C_i = [x_{i-1/2}, x_{i+1/2}] between `left` and `right` (dimensionless lengths)."""
+
+    left: Number
+    right: Number
+    count: Annotated[Whole, Field(ge=2)]
+
+    def __post_init__(self) -> None:
+        if not self.left < self.right:
+            raise ValueError(f"left = {self.left:g} is not below right = {self.right:g}; exchange or change them")
+
+    @property
+    def dx(self) -> float:
+        """Length of a cell."""
+        return (self.right - self.left) / self.count
+
+    @property
+    def x(self) -> NDArray[np.float64]:
+        """Cell centres, shape (count,); mirrored ends give bitwise mirrored centres."""
+        i = np.arange(self.count) + 0.5
+        return (self.left * (self.count - i) + self.right * i) / self.count

@@ -1,0 +1,37 @@
+"""Laws of friction: how hard the ground can hold a mass back."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from ..value import Number, kind, value
+from .chute import Chute
+
+
+@value
+class Frictionless:
+    """Ground that holds nothing back: R = 0."""
+
+    kind: Literal["frictionless"] = kind("frictionless")
+
+    def resistance(self, chute: Chute) -> float:
+        """R of Definition 1 (dimensionless)."""
+        return 0.0
+
+
+@value
+class Coulomb:
+    """Coulomb friction with angle `delta` in radians, static as well as dynamic: R = cos zeta tan delta."""
+
+    delta: Annotated[Number, Field(ge=0, lt=math.pi / 2)]
+    kind: Literal["coulomb"] = kind("coulomb")
+
+    def resistance(self, chute: Chute) -> float:
+        """R of Definition 1 (dimensionless)."""
+        return chute.cos * math.tan(self.delta)
+
+
+Friction = Annotated[Frictionless | Coulomb, Field(discriminator="kind")]

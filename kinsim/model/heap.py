@@ -1,0 +1,184 @@
+"""Initial masses: each heap gives the height h and the velocity u at the places x."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BeforeValidator, Field, GetPydanticSchema
+from pydantic_core import core_schema
+
+from ..errors import InputError
+from ..expression import evaluate
+from ..value import Number, kind, value
+
+Array = NDArray[np.float64]
+State = tuple[Array, Array]
+
+
+@value
+class Blocks:
+    """Heights that jump at `edges`: heights[k] between edges[k-1] and edges[k]; an edge belongs to the block on its left."""
+
+    edges: tuple[Number, ...]
+    heights: tuple[Number, ...]
+    kind: Literal["blocks"] = kind("blocks")
+
+    def __post_init__(self) -> None:
+        if len(self.heights) != len(self.edges) + 1:
+            raise ValueError(
+                f"{len(self.edges)} edges need {len(self.edges) + 1} heights, got {len(self.heights)}; add or remove some"
+            )
+        if any(a >= b for a, b in zip(self.edges, self.edges[1:], strict=False)):
+            raise ValueError("edges must increase; sort them")
+
+    def __call__(self, x: Array) -> State:
+        """h, u at `x`."""
+        return np.asarray(self.heights)[np.searchsorted(self.edges, x, side="left")], np.zeros_like(x)
+
+
+@value
+class Parabola:
+    """The cap max(peak/10, peak - steepness (x - centre)^2): the paper's fourth example, K = peak and l = steepness."""
+
+    peak: Number = 1.0
+    steepness: Number = 4.0
+    centre: Number = 0.0
+    kind: Literal["parabola"] = kind("parabola")
+
+    def __call__(self, x: Array) -> State:
+        """h, u at `x`."""
+        return np.maximum(self.peak / 10, self.peak - self.steepness * (x - self.centre) ** 2), np.zeros_like(x)
+
+
+@value
+class Sine:
+    """The paper's fifth example: max(0.9 sin(pi y) - 0.3 sin(2 pi y), 0.1) for 0 < y = x - start < 1, else 0.1."""
+
+    start: Number = 0.6
+    kind: Literal["sine"] = kind("sine")
+
+    def __call__(self, x: Array) -> State:
+        """h, u at `x`."""
+        y = x - self.start
+        hump = np.maximum(0.9 * np.sin(np.pi * y) - 0.3 * np.sin(2 * np.pi * y), 0.1)
+        return np.where((y > 0) & (y < 1), hump, 0.1), np.zeros_like(x)
+
+
+@value
+class Expression:
+    """Formulas in x, for example ``h = "max(0, 1 - x**2)"`` (see `kinsim.expression`)."""
+
+    h: str
+    u: str = "0"
+    kind: Literal["expression"] = kind("expression")
+
+    def __post_init__(self) -> None:
+        evaluate(self.h, np.array([0.1234]))
+        evaluate(self.u, np.array([0.1234]))
+
+    def __call__(self, x: Array) -> State:
+        """h, u at `x`."""
+        return evaluate(self.h, x), evaluate(self.u, x)
+
+
+@value
+class Table:
+    """A CSV file with the columns x, h and, if wanted, u; linear between its rows, constant beyond its ends."""
+
+    path: Annotated[Path, BeforeValidator(lambda given: Path(given) if isinstance(given, str) else given)]
+    kind: Literal["table"] = kind("table")
+
+    def __post_init__(self) -> None:
+        self._columns()
+
+    def __call__(self, x: Array) -> State:
+        """h, u at `x`."""
+        places, h, u = self._columns()
+        return np.interp(x, places, h), np.interp(x, places, u)
+
+    def _columns(self) -> tuple[Array, Array, Array]:
+        try:
+            with self.path.open(newline="", encoding="utf-8") as file:
+                rows = list(csv.reader(line for line in file if line.strip() and not line.lstrip().startswith("#")))
+        except (OSError, UnicodeDecodeError, csv.Error) as error:
+            reason = getattr(error, "strerror", None) or "it is not a CSV file"
+            raise InputError(f"table {self.path}: cannot be read: {reason}") from None
+        header = [name.strip() for name in rows[0]] if rows else []
+        if header not in (["x", "h"], ["x", "h", "u"]):
+            raise InputError(f"table {self.path}: the first line must be x,h or x,h,u, got {','.join(header)[:60]!r}")
+        try:
+            columns = np.array([[float(entry) for entry in row] for row in rows[1:]], dtype=float).reshape(-1, len(header))
+        except ValueError:
+            raise InputError(f"table {self.path}: each row needs {len(header)} numbers; look for gaps and words") from None
+        if len(columns) < 2 or not np.isfinite(columns).all():
+            raise InputError(f"table {self.path}: needs at least two rows of finite numbers")
+        falls = np.flatnonzero(np.diff(columns[:, 0]) <= 0)
+        if falls.size:
+            raise InputError(f"table {self.path}: x does not increase at row {falls[0] + 2}; sort the rows")
+        return columns[:, 0], columns[:, 1], columns[:, 2] if len(header) == 3 else np.zeros(len(columns))
+
+
+def _cell_values(given: Any) -> Array:
+    try:
+        array = np.array(given, dtype=float)
+    except (TypeError, ValueError):
+        raise ValueError("must be a list of numbers, one per cell") from None
+    if array.ndim != 1 or not np.isfinite(array).all():
+        raise ValueError("must be a list of finite numbers, one per cell")
+    array.flags.writeable = False
+    return array
+
+
+CellValues = Annotated[
+    Array,
+    GetPydanticSchema(
+        lambda source, handler: core_schema.no_info_plain_validator_function(
+            _cell_values, serialization=core_schema.plain_serializer_function_ser_schema(lambda array: array.tolist())
+        ),
+        lambda schema, handler: {"type": "array", "items": {"type": "number"}},
+    ),
+]
+
+
+@value
+class Profile:
+    """Cell values as they are, `h` and `u` of shape (cells.count,); u = 0 if not given."""
+
+    h: CellValues
+    u: CellValues | None = None
+    kind: Literal["profile"] = kind("profile")
+
+    def __call__(self, x: Array) -> State:
+        """h, u at `x`."""
+        u = np.zeros_like(self.h) if self.u is None else self.u
+        if self.h.shape != x.shape or u.shape != x.shape:
+            raise InputError(f"profile: h has {self.h.size} and u {u.size} values for {x.size} cells; give one per cell")
+        return self.h.copy(), u.copy()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Profile):
+            return NotImplemented
+        mine, theirs = (np.zeros_like(p.h) if p.u is None else p.u for p in (self, other))
+        return np.array_equal(self.h, other.h) and np.array_equal(mine, theirs)
+
+    def __hash__(self) -> int:
+        return hash(self.h.tobytes())
+
+    def __repr__(self) -> str:
+        moving = "" if self.u is None else f", u={_outline(self.u)}"
+        return f"Profile(h={_outline(self.h)}{moving})"
+
+
+def _outline(array: Array) -> str:
+    if array.size <= 8:
+        return repr(array.tolist())
+    low, high = (f"{bound:.6g}" for bound in (math.fsum([array.min()]), math.fsum([array.max()])))
+    return f"<{array.size} values, {low} to {high}>"
+
+
+Heap = Annotated[Blocks | Parabola | Sine | Table | Expression | Profile, Field(discriminator="kind")]

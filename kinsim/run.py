@@ -1,0 +1,181 @@
+"""What a run leaves behind: states, ledger and verdict."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import TypeAdapter
+
+from .balance.stages import Array
+from .clock import Courant, Fixed
+from .method import Kinetic, Macroscopic
+from .scene import Scene
+from .store import write_netcdf
+
+if TYPE_CHECKING:
+    import xarray
+
+VerdictKind = Literal["finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "interrupted"]
+
+LEDGER = {
+    "mass": "mass in the domain",
+    "momentum": "momentum in the domain",
+    "h_min": "least height since the row before",
+    "u_max": "largest |u| since the row before",
+    "courant": "largest Courant number since the row before",
+    "inflow_left": "mass that entered through the left end so far",
+    "inflow_right": "mass that entered through the right end so far",
+    "coupling_drift": "mass made so far at faces whose two cells took different fluxes",
+    "window_loss": "mass that f lost so far over the edge of the velocity window",
+    "sampling_mass": "mass of f less mass of the state",
+    "sampling_momentum": "momentum of f less momentum of the state",
+}
+"""The columns of the ledger; mass(t) - mass(0) = inflow_left + inflow_right + coupling_drift to rounding."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """How a run ended; `str` says it in human words.
+
+    Attributes:
+        kind: "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small" or "interrupted".
+        message: One sentence.
+        step: Number of the last step kept.
+        cell: The cell at fault, if one is.
+    """
+
+    kind: VerdictKind
+    message: str
+    step: int
+    cell: int | None = None
+
+    def __str__(self) -> str:
+        return self.message
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A finished or stopped run.
+
+    Attributes:
+        scene, method, clock: What was run; a velocity grid without a bound has got one.
+        t: Saved times, shape (nt,); the first is the start, the last the end.
+        h, q: Saved states, shape (nt, nx).
+        dt: Length of every step, shape (steps,).
+        entries: Ledger columns, each of shape (nt,).
+        dumps: Densities that were asked for, by name.
+        verdict: How it ended.
+        wall_time: Seconds spent in the time loop, compiling excluded.
+    """
+
+    scene: Scene
+    method: Kinetic | Macroscopic
+    clock: Fixed | Courant
+    t: Array
+    h: Array
+    q: Array
+    dt: Array
+    entries: Mapping[str, Array]
+    verdict: Verdict
+    wall_time: float
+    dumps: Mapping[str, xarray.DataArray] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<kinsim.Run {self.scene.title or 'untitled'!r}, {self.method.kind}, {self.steps} steps: {self.verdict}>"
+
+    @property
+    def x(self) -> Array:
+        """Cell centres, shape (nx,)."""
+        return self.scene.x
+
+    @property
+    def u(self) -> Array:
+        """Velocity q/h, 0 where dry, shape (nt, nx)."""
+        return np.divide(self.q, self.h, out=np.zeros_like(self.q), where=self.h > 0)
+
+    @property
+    def steps(self) -> int:
+        """Steps taken."""
+        return self.dt.size
+
+    @cached_property
+    def ledger(self) -> xarray.Dataset:
+        """The books over the saved times; see `LEDGER` for the columns."""
+        import xarray
+
+        columns = {name: ("t", column, _attrs(LEDGER[name])) for name, column in self.entries.items()}
+        return xarray.Dataset(columns, coords={"t": ("t", self.t, _attrs("time"))})
+
+    @property
+    def mass_drift(self) -> float:
+        """Relative change of mass that no inflow accounts for; the coupling drift of scheme 3 is part of it."""
+        mass = self.entries["mass"]
+        entered = self.entries["inflow_left"][-1] + self.entries["inflow_right"][-1]
+        return float((mass[-1] - mass[0] - entered) / mass[0]) if mass[0] > 0 else 0.0
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Everything as one labelled dataset; each dump has axes of its own."""
+        import xarray
+
+        state = {
+            "h": (("t", "x"), self.h, _attrs("height")),
+            "q": (("t", "x"), self.q, _attrs("momentum h u")),
+            "u": (("t", "x"), self.u, _attrs("velocity q/h, 0 where dry")),
+        }
+        coords = {"t": ("t", self.t, _attrs("time")), "x": ("x", self.x, _attrs("cell centre along the chute"))}
+        dumped = {name: _own_axes(name, array) for name, array in self.dumps.items()}
+        dataset = xarray.Dataset(state, coords=coords).merge(self.ledger)
+        return dataset.assign(dumped).assign_attrs(self.provenance())
+
+    def to_netcdf(self, path: str | Path) -> Path:
+        """Write `to_xarray()` to a netCDF file, all of it or nothing.
+
+        Raises:
+            InputError: The folder does not exist or cannot be written.
+        """
+        return write_netcdf(self.to_xarray(), path)
+
+    def provenance(self) -> dict[str, Any]:
+        """Scene, method, clock and versions as text, with a hash that names the computation."""
+        described = {
+            "scene": describe(Scene, self.scene),
+            "method": describe(type(self.method), self.method),
+            "clock": describe(type(self.clock), self.clock),
+            "kinsim_version": version("kinsim"),
+        }
+        digest = hashlib.sha256("\n".join(described.values()).encode() + self.h[0].tobytes() + self.q[0].tobytes())
+        packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "numba", "xarray", "h5netcdf"))
+        return {
+            "title": self.scene.title or "kinsim run",
+            **described,
+            "hash": digest.hexdigest(),
+            "versions": f"kinsim {described['kinsim_version']}, Python {platform.python_version()}, {packages}",
+            "verdict": self.verdict.kind,
+            "verdict_message": self.verdict.message,
+            "steps": self.steps,
+            "wall_time_seconds": self.wall_time,
+            "Conventions": "CF-1.11",
+        }
+
+
+def describe(kind: Any, thing: Any) -> str:
+    """A scene, method or clock as JSON with sorted keys."""
+    return json.dumps(TypeAdapter(kind).dump_python(thing, mode="json"), sort_keys=True)
+
+
+def _attrs(long_name: str) -> dict[str, str]:
+    return {"long_name": long_name, "units": "1"}
+
+
+def _own_axes(name: str, array: xarray.DataArray) -> xarray.DataArray:
+    """The dump with its axes named after it, so that several fit into one dataset."""
+    return array.rename({axis: f"{axis}_{name}" for axis in array.dims})

@@ -1,0 +1,58 @@
+"""Results as netCDF files, written under another name and renamed, so that half a file never bears the final name."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .errors import InputError
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def check_destination(path: str | Path) -> Path:
+    """`path`, if a file can be put there.
+
+    Raises:
+        InputError: Its folder does not exist or cannot be written, or it is a folder.
+    """
+    path = Path(path)
+    folder = path.parent
+    if not folder.is_dir():
+        raise InputError(f"{path}: the folder {folder} does not exist; create it first")
+    if path.is_dir():
+        raise InputError(f"{path}: is a folder; name a file in it")
+    try:
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as error:
+        raise InputError(f"{path}: cannot write into {folder} ({error.strerror}); choose another folder") from None
+    return path
+
+
+def write_netcdf(dataset: xarray.Dataset, path: str | Path) -> Path:
+    """Write `dataset` to `path`, all of it or nothing.
+
+    Raises:
+        InputError: The file cannot be put there.
+    """
+    path = check_destination(path)
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    os.close(handle)
+    try:
+        dataset.to_netcdf(name, engine="h5netcdf", invalid_netcdf=False)
+        os.chmod(name, 0o666 & ~_umask())
+        os.replace(name, path)
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror or error}); nothing was kept there") from None
+    finally:
+        Path(name).unlink(missing_ok=True)
+    return path
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
