@@ -43,7 +43,7 @@ class _Arithmetic(SimpleEval):  # type: ignore[misc]
 
     def __init__(self, names: dict[str, float]) -> None:
         super().__init__(operators=OPERATORS, functions=FUNCTIONS, names=names)
-        self.nodes = {node: call for node, call in self.nodes.items() if node in NODES}
+        self.nodes: dict[type, Callable[..., Any]] = {node: call for node, call in self.nodes.items() if node in NODES}
         self.nodes[ast.Constant] = self._constant
 
     @staticmethod

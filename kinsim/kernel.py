@@ -47,7 +47,7 @@ def cache_folder() -> str:
     return str(chosen)
 
 
-class _Locator(_CacheLocator):  # type: ignore[misc]
+class _Locator(_CacheLocator):
     """Tells numba where a kernel's code is kept and when it is out of date."""
 
     def __init__(self, file: str) -> None:
@@ -67,11 +67,11 @@ class _Locator(_CacheLocator):  # type: ignore[misc]
         return cls(py_file)
 
 
-class _Keep(CompileResultCacheImpl):  # type: ignore[misc]
-    _locator_classes = (_Locator,)
+class _Keep(CompileResultCacheImpl):
+    _locator_classes = [_Locator]  # type: ignore[list-item]  # noqa: RUF012
 
 
-class _Cache(FunctionCache):  # type: ignore[misc]
+class _Cache(FunctionCache):
     _impl_class = _Keep
 
 
@@ -80,6 +80,6 @@ def kernel(function: F) -> F:
 
     Kernels take arrays and scalars and write into arrays they are given. Division by zero gives infinity, as in numpy.
     """
-    dispatcher = numba.njit(error_model="numpy")(function)
-    dispatcher._cache = _Cache(function)
+    dispatcher: Any = numba.njit(error_model="numpy")(function)
+    dispatcher._cache = _Cache(function)  # type: ignore[no-untyped-call]
     return dispatcher  # type: ignore[no-any-return]

@@ -21,7 +21,7 @@ class Macroscopic:
 
     Attributes:
         scheme: 1 upwind and sliding, 2 balanced and stopping, 3 coupled.
-        coupling: Of scheme 3. "cell", the paper's: each cell chooses its fluxes; "face": one flux per face, conservative.
+        coupling: Of scheme 3: "cell", the paper's, each cell has its fluxes; "face", one flux per face, conservative.
     """
 
     scheme: SchemeNumber = 3
@@ -45,7 +45,7 @@ class Kinetic:
         scheme: 1 upwind and sliding, 2 balanced and stopping, 3 coupled.
         velocity: The velocity grid.
         equilibrium: How M stands on the grid: "cell-average" or "sampled".
-        coupling: Of scheme 3. "cell", the paper's: each cell chooses its fluxes; "face": one flux per face, conservative.
+        coupling: Of scheme 3: "cell", the paper's, each cell has its fluxes; "face", one flux per face, conservative.
     """
 
     scheme: SchemeNumber = 3

@@ -90,7 +90,9 @@ class Run:
     dumps: Mapping[str, xarray.DataArray] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        return f"<kinsim.Run {self.scene.title or 'untitled'!r}, {self.method.kind}, {self.steps} steps: {self.verdict}>"
+        return (
+            f"<kinsim.Run {self.scene.title or 'untitled'!r}, {self.method.kind}, {self.steps} steps: {self.verdict}>"
+        )
 
     @property
     def x(self) -> Array:

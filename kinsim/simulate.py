@@ -161,7 +161,9 @@ class _Loop:
         negative = min([*(row["h_min"] for row in self.rows), self._since[0]])
         below = f"; heights fell to {negative:.3g}" if negative < 0 else ""
         where = f"step {self.step + 1}: " if kind in ("non-finite", "cfl-broken", "window-too-small") else ""
-        return Verdict(kind, f"{where}{message} at t = {self.t:.6g} after {self.step} steps{over}{below}", self.step, cell)
+        return Verdict(
+            kind, f"{where}{message} at t = {self.t:.6g} after {self.step} steps{over}{below}", self.step, cell
+        )
 
     def finish(self, verdict: Verdict, wall_time: float) -> Run:
         """The run as a value; the last good state is its last row."""

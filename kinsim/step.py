@@ -23,11 +23,20 @@ from .scene import Scene
 class Wing(Protocol):
     """How half-range moments come about."""
 
-    def equilibrium(self, now: Stages) -> None: ...
-    def upwind_flux(self, now: Stages) -> None: ...
-    def balanced_flux(self, now: Stages) -> None: ...
-    def transport(self, now: Stages, lam: float) -> None: ...
-    def force(self, now: Stages) -> float: ...
+    def equilibrium(self, now: Stages) -> None:
+        """M(h, xi - u), (12)."""
+
+    def upwind_flux(self, now: Stages) -> None:
+        """Write F1, F2 from the upwind face states."""
+
+    def balanced_flux(self, now: Stages) -> None:
+        """Write B1, B2 from the balanced face states."""
+
+    def transport(self, now: Stages, lam: float) -> None:
+        """f after transport."""
+
+    def force(self, now: Stages) -> float:
+        """f after the force; returns the mass that left the velocity window, per dx."""
 
 
 class Books(NamedTuple):
@@ -166,6 +175,6 @@ def step(scene: Scene, method: Kinetic | Macroscopic, h: Array, q: Array, dt: fl
         h=now.h[1:-1], u=now.u[1:-1], upwind=now.upwind, balanced=now.balanced if balanced else None,
         flux=np.array([now.F1, now.F2]), balanced_flux=np.array([now.B1, now.B2]) if balanced else None,
         slow=now.slow[1:-1], h1=now.h1, q1=now.q1, qhat=now.qhat, impulse=now.J,
-        xi=density and density.grid.xi, M=density and density.M[1:-1],
-        f_transport=density and density.transported, f_force=density and density.f, books=books,
+        xi=density.grid.xi if density else None, M=density.M[1:-1] if density else None,
+        f_transport=density.transported if density else None, f_force=density.f if density else None, books=books,
     )  # fmt: skip

@@ -57,10 +57,12 @@ class Stages:
     def empty(cls, nx: int) -> Stages:
         """Room for a step of `nx` cells."""
         h, u = np.zeros(nx + 2), np.zeros(nx + 2)
-        faces = [np.zeros(nx + 1) for _ in range(4)]
-        flags = [np.zeros(nx + 2, dtype=bool), np.zeros(nx, dtype=bool), np.zeros(nx, dtype=bool)]
-        cells = [np.zeros(nx) for _ in range(4)]
-        return cls(h, u, np.zeros(nx), upwind(h, u), Faces.empty(nx), *faces, np.zeros(nx), *flags, *cells)
+        cells = {name: np.zeros(nx) for name in ("q", "h1_candidate", "h1", "qhat", "J", "q1")}
+        faces = {name: np.zeros(nx + 1) for name in ("F1", "F2", "B1", "B2")}
+        return cls(
+            h=h, u=u, upwind=upwind(h, u), balanced=Faces.empty(nx), slow=np.zeros(nx + 2, dtype=bool),
+            at_left=np.zeros(nx, dtype=bool), at_right=np.zeros(nx, dtype=bool), **cells, **faces,
+        )  # fmt: skip
 
     def begin(self, scene: Scene, h: Array, q: Array) -> None:
         """Take over U^n = (h, q) and fill the ghosts; dry cells are at rest."""

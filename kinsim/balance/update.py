@@ -1,4 +1,4 @@
-"""The conservative update U^n - lam (F_{i+1/2} - F_{i-1/2}), with the flux that each cell chose at each of its walls."""
+"""The update U^n - lam (F_{i+1/2} - F_{i-1/2}), with the flux that each cell chose at each of its walls."""
 
 from __future__ import annotations
 

@@ -74,9 +74,7 @@ EquilibriumName = Literal["cell-average", "sampled"]
 
 
 @kernel
-def sampled(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, dxi: float, rows: Array
-) -> None:
+def sampled(h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, dxi: float, rows: Array) -> None:
     """M = sqrt(max(2 beta h - (xi - u)^2, 0)) / (pi beta) at the nodes."""
     half = rows.shape[1] // 2
     scale = 1.0 / (math.pi * beta)
@@ -102,8 +100,8 @@ def cell_average(
             c = math.sqrt(2.0 * beta * max(h, 0.0))
             first = min(max((u - c) / dxi, 0.0), half)
             last = min(max((u + c) / dxi, 0.0), half)
-            begin = int(math.floor(first))
-            end = int(math.ceil(last)) if c > 0.0 else begin
+            begin = int(first)
+            end = math.ceil(last) if c > 0.0 else begin
             for k in range(begin):
                 rows[i, half + k if side == 0 else half - 1 - k] = 0.0
             scale = h / (math.pi * dxi)

@@ -25,7 +25,9 @@ class Uniform:
 
     def __post_init__(self) -> None:
         if self.count % 2:
-            raise ValueError(f"count = {self.count} is odd, and no velocity cell may straddle xi = 0; take {self.count + 1}")
+            raise ValueError(
+                f"count = {self.count} is odd, and no velocity cell may straddle xi = 0; take {self.count + 1}"
+            )
 
     def grid(self) -> Grid:
         """The grid itself; needs a bound."""
@@ -54,7 +56,7 @@ class Grid:
     @property
     def side(self) -> NDArray[np.float64]:
         """Centres of the cells with xi > 0, outward, shape (count/2,)."""
-        return (np.arange(self.half) + 0.5) * self.dxi
+        return (np.arange(self.half, dtype=float) + 0.5) * self.dxi
 
     @property
     def xi(self) -> NDArray[np.float64]:

@@ -22,7 +22,7 @@ State = tuple[Array, Array]
 
 @value
 class Blocks:
-    """Heights that jump at `edges`: heights[k] between edges[k-1] and edges[k]; an edge belongs to the block on its left."""
+    """Heights that jump at `edges`: heights[k] between edges[k-1] and edges[k], the upper edge included."""
 
     edges: tuple[Number, ...]
     heights: tuple[Number, ...]
@@ -30,9 +30,7 @@ class Blocks:
 
     def __post_init__(self) -> None:
         if len(self.heights) != len(self.edges) + 1:
-            raise ValueError(
-                f"{len(self.edges)} edges need {len(self.edges) + 1} heights, got {len(self.heights)}; add or remove some"
-            )
+            raise ValueError(f"{len(self.edges)} edges need {len(self.edges) + 1} heights, got {len(self.heights)}")
         if any(a >= b for a, b in zip(self.edges, self.edges[1:], strict=False)):
             raise ValueError("edges must increase; sort them")
 
@@ -112,9 +110,13 @@ class Table:
         if header not in (["x", "h"], ["x", "h", "u"]):
             raise InputError(f"table {self.path}: the first line must be x,h or x,h,u, got {','.join(header)[:60]!r}")
         try:
-            columns = np.array([[float(entry) for entry in row] for row in rows[1:]], dtype=float).reshape(-1, len(header))
+            columns = np.array([[float(entry) for entry in row] for row in rows[1:]], dtype=float).reshape(
+                -1, len(header)
+            )
         except ValueError:
-            raise InputError(f"table {self.path}: each row needs {len(header)} numbers; look for gaps and words") from None
+            raise InputError(
+                f"table {self.path}: each row needs {len(header)} numbers; look for gaps and words"
+            ) from None
         if len(columns) < 2 or not np.isfinite(columns).all():
             raise InputError(f"table {self.path}: needs at least two rows of finite numbers")
         falls = np.flatnonzero(np.diff(columns[:, 0]) <= 0)
@@ -157,7 +159,9 @@ class Profile:
         """h, u at `x`."""
         u = np.zeros_like(self.h) if self.u is None else self.u
         if self.h.shape != x.shape or u.shape != x.shape:
-            raise InputError(f"profile: h has {self.h.size} and u {u.size} values for {x.size} cells; give one per cell")
+            raise InputError(
+                f"profile: h has {self.h.size} and u {u.size} values for {x.size} cells; give one per cell"
+            )
         return self.h.copy(), u.copy()
 
     def __eq__(self, other: object) -> bool:

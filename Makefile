@@ -1,0 +1,34 @@
+# Everything a fresh machine needs is Python 3.11 or newer, pip and make.
+
+PYTHON ?= python3
+BIN := .venv/bin
+SHELL := /bin/sh
+
+.PHONY: help demo test check clean
+
+help:
+	@echo "make demo    install, run the silo with both wings, write out/silo.nc and out/silo.png"
+	@echo "make test    install, lint, type-check, run all tests"
+	@echo "make clean   remove the environment and everything that was made"
+
+.venv/installed: pyproject.toml
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "kinsim needs Python 3.11 or newer; name one with: make PYTHON=python3.11")'
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@
+
+demo: .venv/installed
+	@mkdir -p out
+	$(BIN)/kinsim run silo --out out/silo.nc --plot out/silo.png
+	$(BIN)/kinsim compare silo
+
+check: .venv/installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+test: check
+	$(BIN)/pytest --quiet --numprocesses 2
+
+clean:
+	rm -rf .venv out build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
