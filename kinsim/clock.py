@@ -64,3 +64,24 @@ class Courant:
     def progress(self, step: int, t: float) -> float:
         """The share that is done."""
         return t / self.end
+
+
+@value
+class Replay:
+    """The steps of another run, so that two runs meet at the same times; `end` is the time after the last one."""
+
+    dts: tuple[Positive, ...]
+    end: Annotated[Number, Field(ge=0)]
+    kind: Literal["replay"] = kind("replay")
+
+    def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
+        """The other run's step."""
+        return self.dts[step] if step < len(self.dts) else None
+
+    def time_after(self, step: int, t: float, dt: float) -> float:
+        """t + dt, and the end exactly after the last step."""
+        return self.end if step == len(self.dts) else t + dt
+
+    def progress(self, step: int, t: float) -> float:
+        """The share that is done."""
+        return step / len(self.dts)

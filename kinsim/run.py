@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from .balance.stages import Array
-from .clock import Courant, Fixed
+from .clock import Clock
 from .method import Kinetic, Macroscopic
 from .scene import Scene
 from .store import write_netcdf
@@ -79,7 +79,7 @@ class Run:
 
     scene: Scene
     method: Kinetic | Macroscopic
-    clock: Fixed | Courant
+    clock: Clock
     t: Array
     h: Array
     q: Array

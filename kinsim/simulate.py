@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from .balance.stages import Array
-from .clock import Courant, Fixed
+from .clock import Clock, Fixed
 from .dump import Dump, Recorder
 from .errors import InputError
 from .kernel import kernel
@@ -30,7 +30,7 @@ ROUNDING = 1e-12
 def simulate(
     scene: Scene,
     method: Kinetic | Macroscopic,
-    clock: Fixed | Courant,
+    clock: Clock,
     save_every: int = 100,
     *,
     force: bool = False,
@@ -69,7 +69,7 @@ def simulate(
     return loop.finish(verdict, time.perf_counter() - began)
 
 
-def find_bound(scene: Scene, method: Kinetic, clock: Fixed | Courant) -> float:
+def find_bound(scene: Scene, method: Kinetic, clock: Clock) -> float:
     """1.05 times the largest |u| + c + dt |g| of a run of the closed-form twin, face states included."""
     twin = _Loop(scene, method.twin, clock, save_every=2**62, force=True, dumps=())
     twin.run(None)
@@ -84,7 +84,7 @@ class _Loop:
         self,
         scene: Scene,
         method: Kinetic | Macroscopic,
-        clock: Fixed | Courant,
+        clock: Clock,
         save_every: int,
         force: bool,
         dumps: Sequence[Dump],
@@ -211,7 +211,7 @@ class _Loop:
         self._since = (math.inf, 0.0, 0.0)
 
 
-def _over_the_bound(courant: float, dt: float, allowed: float, clock: Fixed | Courant) -> str:
+def _over_the_bound(courant: float, dt: float, allowed: float, clock: Clock) -> str:
     remedy = f"take dt <= {allowed:.4g}" if isinstance(clock, Fixed) else "take a Courant number of at most 1"
     return f"dt = {dt:.4g} breaks the CFL bound (28): Courant number {courant:.4g}; {remedy}, or force it"
 

@@ -1,0 +1,115 @@
+"""Several methods on one scene, measured against the first of them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import reduce
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..clock import Courant, Fixed, Replay
+from ..errors import InputError
+from ..method import Kinetic, Macroscopic
+from ..run import Run
+from ..scene import Scene
+from ..simulate import Progress, simulate
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def compare(
+    scene: Scene,
+    methods: Sequence[Kinetic | Macroscopic],
+    clock: Fixed | Courant,
+    save_every: int = 100,
+    *,
+    force: bool = False,
+    progress: Progress | None = None,
+) -> xarray.Dataset:
+    """Run `methods` and measure how far each is from the first.
+
+    With a `Courant` clock the others repeat the steps of the first, so that all meet at the same times. Where a run
+    was stopped, the rows that all runs have are kept, and its verdict says why.
+
+    Args:
+        scene: What happens.
+        methods: How it is computed, the reference first.
+        clock: When.
+        save_every: Every so many steps the states are compared, and at the start and at the end.
+        force: Run although the CFL bound (28) is broken.
+        progress: Called now and then with the share that is done.
+
+    Returns:
+        h_l1, q_l1 (integrals over x) and h_max, q_max of the differences, dims (method, t); wall_time in seconds,
+        steps and verdict, dims (method,).
+
+    Raises:
+        InputError: There is no method, or a first step would break the CFL bound.
+    """
+    if not methods:
+        raise InputError("compare: no methods; give a reference and what is to be measured against it")
+    runs: list[Run] = []
+    for number, method in enumerate(methods):
+        part = _part(progress, number, len(methods)) if progress else None
+        runs.append(simulate(scene, method, _after(runs, clock), save_every, force=force, progress=part))
+    return _differences(runs)
+
+
+def _part(progress: Progress, number: int, of: int) -> Progress:
+    return lambda share: progress((number + share) / of)
+
+
+def _after(runs: list[Run], clock: Fixed | Courant) -> Fixed | Courant | Replay:
+    if not runs or isinstance(clock, Fixed):
+        return clock
+    return Replay(tuple(runs[0].dt.tolist()), end=float(runs[0].t[-1]))
+
+
+def _differences(runs: list[Run]) -> xarray.Dataset:
+    import xarray
+
+    t = reduce(np.intersect1d, [run.t for run in runs])
+    h, q = (np.array([getattr(run, name)[np.searchsorted(run.t, t)] for run in runs]) for name in "hq")
+    dx = runs[0].scene.cells.dx
+    measures = {}
+    for name, values, word in (("h", h, "height"), ("q", q, "momentum")):
+        off = np.abs(values - values[0])
+        for suffix, measured, how in (
+            ("l1", off.sum(axis=2) * dx, "integral over x of the"),
+            ("max", off.max(axis=2), "largest"),
+        ):
+            attrs = {"long_name": f"{how} difference in {word}", "units": "1"}
+            measures[f"{name}_{suffix}"] = (("method", "t"), measured, attrs)
+    return xarray.Dataset(
+        {
+            **measures,
+            "wall_time": ("method", [run.wall_time for run in runs], {"long_name": "wall time", "units": "s"}),
+            "steps": ("method", [run.steps for run in runs], {"long_name": "steps taken", "units": "1"}),
+            "verdict": ("method", [str(run.verdict) for run in runs], {"long_name": "how the run ended"}),
+        },
+        coords={
+            "method": ("method", _labels(runs), {"long_name": "method; the first is the reference"}),
+            "t": ("t", t, {"long_name": "time", "units": "1"}),
+        },
+        attrs={"title": runs[0].scene.title or "kinsim comparison"},
+    )
+
+
+def _labels(runs: list[Run]) -> list[str]:
+    """A name for each method, alike ones numbered."""
+    names = [method_name(run.method) for run in runs]
+    return [f"{name} ({names[: i + 1].count(name)})" if names.count(name) > 1 else name for i, name in enumerate(names)]
+
+
+def method_name(method: Kinetic | Macroscopic) -> str:
+    """A method in a few words."""
+    words = f"{method.kind}, scheme {method.scheme}"
+    if method.scheme == 3 and method.coupling != "cell":
+        words += f" by {method.coupling}"
+    if isinstance(method, Kinetic):
+        words += f", {method.velocity.count} nodes"
+        if method.equilibrium != "cell-average":
+            words += f", {method.equilibrium}"
+    return words

@@ -1,0 +1,141 @@
+"""Scene files: TOML to scene, method and clock. The built-in scenes are files too."""
+
+from __future__ import annotations
+
+import difflib
+import tomllib
+from collections.abc import Sequence
+from dataclasses import field, fields
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
+
+from .clock import Courant, Fixed
+from .errors import InputError
+from .finding import one_line
+from .method import Kinetic, Macroscopic, Method
+from .scene import Scene
+from .value import value
+
+BUILT_IN = Path(__file__).parent / "scenes"
+
+
+def _clock_by_keys(given: Any) -> Any:
+    """A clock's kind follows from its keys: dt and steps, or number and end."""
+    if not isinstance(given, dict) or "kind" in given:
+        return given
+    if {"dt", "steps"} & given.keys() and {"number", "end"} & given.keys():
+        raise ValueError("dt and steps, or number and end; keep one of the two pairs")
+    return {"kind": "courant" if {"number", "end"} & given.keys() else "fixed", **given}
+
+
+def _kinetic_unless_named(given: Any) -> Any:
+    return {"kind": "kinetic", **given} if isinstance(given, dict) else given
+
+
+@value
+class SceneFile(Scene):
+    """What a scene file holds: the keys of a scene, the clock, and perhaps a method and the paper's figure."""
+
+    clock: Annotated[Fixed | Courant, Field(discriminator="kind"), BeforeValidator(_clock_by_keys)] = field(
+        kw_only=True
+    )
+    method: Annotated[Method, BeforeValidator(_kinetic_unless_named)] = Kinetic()
+    figure: str = ""
+
+    @property
+    def scene(self) -> Scene:
+        """The scene alone."""
+        return Scene(**{key.name: getattr(self, key.name) for key in fields(Scene)})
+
+
+def load_scene(name_or_path: str | Path) -> tuple[Scene, Kinetic | Macroscopic, Fixed | Courant]:
+    """Read a scene.
+
+    Args:
+        name_or_path: The name of a built-in scene or the path of a TOML file; the path of a table in it is relative
+            to the file's folder.
+
+    Returns:
+        Scene, method and clock as in the file; without a method in it the kinetic one.
+
+    Raises:
+        InputError: There is no such scene, or it is not as it should be; the message names file, key and remedy.
+    """
+    file = check(read_keys(name_or_path), str(name_or_path))
+    return file.scene, file.method, file.clock
+
+
+def built_in() -> dict[str, Path]:
+    """The files of the built-in scenes by name, in the order of the paper's figures."""
+    return {
+        path.stem: path for path in sorted(BUILT_IN.glob("*.toml"), key=lambda path: str(read_keys(path)["figure"]))
+    }
+
+
+def read_keys(name_or_path: str | Path) -> dict[str, Any]:
+    """The keys of a scene file as they stand there."""
+    path = _find(name_or_path)
+    try:
+        keys = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(f"{name_or_path}: cannot be read: {error.strerror}; give the path of a scene file") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{name_or_path}: is not UTF-8 text; give a scene file in TOML") from None
+    except (tomllib.TOMLDecodeError, ValueError, RecursionError) as error:
+        raise InputError(f"{name_or_path}: is not TOML: {error}; correct it there") from None
+    heap = keys.get("heap")
+    if isinstance(heap, dict) and isinstance(heap.get("path"), str):
+        heap["path"] = str(path.parent / heap["path"])
+    return keys
+
+
+def check(keys: dict[str, Any], place: str) -> SceneFile:
+    """The keys of a scene file as values; `place` names the file where something is wrong."""
+    try:
+        return TypeAdapter(SceneFile).validate_python(keys)
+    except ValidationError as error:
+        raise InputError(one_line(error, place, SceneFile, separator=": ")) from None
+
+
+def change(keys: dict[str, Any], settings: Sequence[str]) -> None:
+    """Put settings ``friction.delta=pi/12`` over the keys of a scene file; a value is TOML, or else a string."""
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        *tables, last = (part.strip() for part in name.split("."))
+        if not equals or not all([*tables, last]):
+            raise InputError(f"--set {setting}: is not key=value; write for example --set friction.delta=pi/12")
+        table = keys
+        for step in tables:
+            table = table.setdefault(step, {})
+            if not isinstance(table, dict):
+                raise InputError(f"--set {setting}: {step} is not a table of keys; leave out what follows it")
+        table[last] = _toml_value(text)
+
+
+def take_method(keys: dict[str, Any], kind: str) -> None:
+    """Make `kind` the method; scheme and coupling stay."""
+    method = keys.get("method", {})
+    if isinstance(method, dict) and method.get("kind", "kinetic") != kind:
+        keys["method"] = {"kind": kind, **{key: method[key] for key in ("scheme", "coupling") if key in method}}
+
+
+def _find(name_or_path: str | Path) -> Path:
+    path, name = Path(name_or_path), str(name_or_path)
+    if (BUILT_IN / f"{name}.toml").is_file():
+        return BUILT_IN / f"{name}.toml"
+    if path.exists() or path.suffix or len(path.parts) != 1:
+        return path
+    names = sorted(scene.stem for scene in BUILT_IN.glob("*.toml"))
+    near = difflib.get_close_matches(name, names, n=1)
+    hint = f"did you mean {near[0]}?" if near else f"give a path, or one of {', '.join(names)}"
+    raise InputError(f"{name}: no such scene; {hint}")
+
+
+def _toml_value(text: str) -> Any:
+    try:
+        keys = tomllib.loads(f"value = {text}")
+    except (tomllib.TOMLDecodeError, ValueError, RecursionError):
+        return text.strip()
+    return keys["value"] if len(keys) == 1 else text
