@@ -9,7 +9,9 @@ from pydantic import Field
 
 from .balance.schemes import Coupling
 from .kinetic.equilibrium import EQUILIBRIA, EquilibriumName
-from .kinetic.velocity import Uniform
+from .kinetic.force import ForceName
+from .kinetic.project import ProjectionName
+from .kinetic.velocity import Fitted, Uniform, Velocity
 from .value import kind, value
 
 SchemeNumber = Literal[1, 2, 3]
@@ -28,14 +30,6 @@ class Macroscopic:
     coupling: Coupling = "cell"
     kind: Literal["macroscopic"] = kind("macroscopic")
 
-    def occupied(self, fastest: float) -> float:
-        """The fastest particle itself, max(|u| + c): what (28) bounds."""
-        return fastest
-
-    def rest(self, h_max: float) -> float:
-        """The largest |q| of a mass at rest: rounding."""
-        return 1e-12
-
 
 @value
 class Kinetic:
@@ -43,16 +37,35 @@ class Kinetic:
 
     Attributes:
         scheme: 1 upwind and sliding, 2 balanced and stopping, 3 coupled.
-        velocity: The velocity grid.
-        equilibrium: How M stands on the grid: "cell-average" or "sampled".
+        velocity: Where the density lives: `Uniform`, `Window` or `Fitted`.
+        equilibrium: How M stands on the grid: "cell-average", "sampled", "matched" or "entropic".
+        force: How the impulse moves f: "shift-linear", "shift-exact", "shift-pfc" of (23), "derivative-upwind" or
+            "derivative-centred" of (18).
+        projection: How U comes out of f: "flux-difference" or "re-summed".
         coupling: Of scheme 3: "cell", the paper's, each cell has its fluxes; "face", one flux per face, conservative.
     """
 
     scheme: SchemeNumber = 3
-    velocity: Uniform = Uniform()
+    velocity: Velocity = Uniform()
     equilibrium: EquilibriumName = "cell-average"
+    force: ForceName = "shift-linear"
+    projection: ProjectionName = "flux-difference"
     coupling: Coupling = "cell"
     kind: Literal["kinetic"] = kind("kinetic")
+
+    def __post_init__(self) -> None:
+        plain = ("cell-average", "shift-linear", "flux-difference")
+        if isinstance(self.velocity, Fitted):
+            if (self.equilibrium, self.force, self.projection) != plain:
+                raise ValueError(
+                    "fitted nodes carry M itself; leave equilibrium, force and projection at their defaults"
+                )
+        elif isinstance(self.velocity, Uniform):
+            least = EQUILIBRIA[self.equilibrium].least
+            if self.velocity.count < least:
+                raise ValueError(
+                    f"equilibrium {self.equilibrium!r} needs at least {least} velocity cells, got {self.velocity.count}"
+                )
 
     @property
     def twin(self) -> Macroscopic:
@@ -60,16 +73,15 @@ class Kinetic:
         return Macroscopic(scheme=self.scheme, coupling=self.coupling)
 
     def within(self, bound: float) -> Kinetic:
-        """The same method with the velocity window [-bound, bound]."""
+        """The same method with the velocity window [-bound, bound], if it has none yet."""
+        if not isinstance(self.velocity, Uniform) or self.velocity.bound is not None:
+            return self
         return replace(self, velocity=replace(self.velocity, bound=bound))
 
-    def occupied(self, fastest: float) -> float:
-        """The outermost node that particles up to the speed `fastest` occupy: what (28) bounds on a grid."""
-        return EQUILIBRIA[self.equilibrium].outermost(fastest, self.velocity.grid())
-
-    def rest(self, h_max: float) -> float:
-        """The largest |q| of a mass at rest: a thousandth of a velocity cell."""
-        return 1e-3 * self.velocity.grid().dxi * h_max
+    @property
+    def unbounded(self) -> bool:
+        """Whether the velocity grid still needs a bound."""
+        return self.within(1.0) is not self
 
 
 Method = Annotated[Kinetic | Macroscopic, Field(discriminator="kind")]

@@ -13,6 +13,8 @@ from .clock import Clock, Fixed
 from .dump import Dump, Recorder
 from .errors import InputError
 from .kernel import kernel
+from .kinetic.velocity import Fitted, Uniform
+from .kinetic.wing import Density
 from .method import Kinetic, Macroscopic
 from .run import LEDGER, Run, Verdict, VerdictKind
 from .scene import Scene
@@ -56,9 +58,9 @@ def simulate(
     """
     if save_every < 1:
         raise InputError(f"save_every = {save_every} is below 1; take 1 to keep every step")
-    if dumps and not isinstance(method, Kinetic):
-        raise InputError("dumps need a density: take a Kinetic method")
-    if isinstance(method, Kinetic) and method.velocity.bound is None:
+    if dumps and (isinstance(method, Macroscopic) or isinstance(method.velocity, Fitted)):
+        raise InputError("dumps need a density on a velocity grid: take a Kinetic method with Uniform or Window")
+    if isinstance(method, Kinetic) and method.unbounded:
         method = method.within(find_bound(scene, method, clock))
     loop = _Loop(scene, method, clock, save_every, force, dumps)
     began = time.perf_counter()
@@ -103,6 +105,7 @@ class _Loop:
         self.still = 0
         self.worst_courant = 0.0
         self.reached = 0.0
+        self.outside = ""
         h_min, u_max, self.fastest, _, _, _ = survey(self.h, self.q, scene.beta)
         self._since = (h_min, u_max, 0.0)
         self._warm_up()
@@ -112,10 +115,9 @@ class _Loop:
         """Step until the clock or a fault ends it."""
         scene, method, clock, stepper = self.scene, self.method, self.clock, self.stepper
         dx, beta = scene.cells.dx, scene.beta
-        bound = method.velocity.grid().bound if isinstance(method, Kinetic) else math.inf
-        fastest = self.fastest
+        beyond = method.velocity.beyond if isinstance(method, Kinetic) and isinstance(method.velocity, Uniform) else ""
         while True:
-            speed = method.occupied(fastest)
+            speed = stepper.begin(self.h, self.q)
             dt = clock.next_dt(self.step, self.t, speed, dx)
             if dt is None:
                 return self._end()
@@ -124,14 +126,15 @@ class _Loop:
                 if self.step == 0:
                     raise InputError(_over_the_bound(courant, dt, dx / speed, clock))
                 return self.verdict("cfl-broken", f"{_over_the_bound(courant, dt, dx / speed, clock)}; stopped before")
-            books = stepper(self.h, self.q, dt)
             reached = stepper.reach()
-            if reached > bound * (1.0 + ROUNDING):
-                return self.verdict(
-                    "window-too-small",
-                    f"velocities reach {reached:.4g}, outside the window of {bound:.4g}; "
-                    f"take a bound of {1.05 * reached:.3g} or more; stopped before",
-                )
+            density = stepper.density
+            outside = density is not None and reached > density.grid.bound * (1.0 + ROUNDING)
+            if outside and beyond == "stop":
+                return self.verdict("window-too-small", f"{_outside(reached, density)}; stopped before")
+            books = stepper.advance(dt)
+            if outside and density is not None:
+                self.outside = _outside(reached, density)
+                books = books._replace(window_loss=books.window_loss + dx * density.cut(stepper.now))
             now = stepper.now
             h_min, u_max, fastest, q_max, h_max, bad = survey(now.h1, now.q1, beta)
             if bad >= 0:
@@ -145,7 +148,7 @@ class _Loop:
             self.step, self.t = self.step + 1, after
             self.dts.append(dt)
             self.booked = Books(*map(sum, zip(self.booked, books, strict=True)))
-            self.still = self.still + 1 if q_max <= method.rest(h_max) else 0
+            self.still = self.still + 1 if q_max <= stepper.rest(h_max) else 0
             self.worst_courant = max(self.worst_courant, courant)
             self.reached, self.fastest = max(self.reached, reached), max(self.fastest, fastest)
             self._since = (min(self._since[0], h_min), max(self._since[1], u_max), max(self._since[2], courant))
@@ -159,10 +162,11 @@ class _Loop:
         forced = f" (CFL bound broken on demand, Courant number up to {self.worst_courant:.3g})"
         over = forced if self.worst_courant > 1.0 + ROUNDING else ""
         negative = min([*(row["h_min"] for row in self.rows), self._since[0]])
+        cut = f"; {self.outside}, what is outside was left out and booked" if self.outside else ""
         below = f"; heights fell to {negative:.3g}" if negative < 0 else ""
         where = f"step {self.step + 1}: " if kind in ("non-finite", "cfl-broken", "window-too-small") else ""
         return Verdict(
-            kind, f"{where}{message} at t = {self.t:.6g} after {self.step} steps{over}{below}", self.step, cell
+            kind, f"{where}{message} at t = {self.t:.6g} after {self.step} steps{over}{cut}{below}", self.step, cell
         )
 
     def finish(self, verdict: Verdict, wall_time: float) -> Run:
@@ -188,7 +192,8 @@ class _Loop:
     def _warm_up(self) -> None:
         """Take a step that nobody keeps, so that compiling does not count as running."""
         with np.errstate(all="ignore"):
-            self.stepper(self.h, self.q, 1e-3 * self.scene.cells.dx)
+            self.stepper.begin(self.h, self.q)
+            self.stepper.advance(1e-3 * self.scene.cells.dx)
         survey(self.h, self.q, self.scene.beta)
         self.stepper.reach()
 
@@ -199,7 +204,10 @@ class _Loop:
         if density is not None and self.step:
             weights = density.grid.dxi * dx
             f_mass = math.fsum(density.f.sum(axis=1)) * weights - math.fsum(self.h) * dx
-            f_momentum = math.fsum(density.f @ density.grid.xi) * weights - math.fsum(self.q) * dx
+            f_momentum = (
+                math.fsum(density.f @ density.xi + density.offset * density.f.sum(axis=1)) * weights
+                - math.fsum(self.q) * dx
+            )
         h_min, u_max, courant = self._since
         self.times.append(self.t)
         self.states.append((self.h.copy(), self.q.copy()))
@@ -209,6 +217,11 @@ class _Loop:
             "sampling_mass": f_mass, "sampling_momentum": f_momentum,
         })  # fmt: skip
         self._since = (math.inf, 0.0, 0.0)
+
+
+def _outside(reached: float, density: Density | None) -> str:
+    bound = density.grid.bound if density else math.inf
+    return f"velocities reach {reached:.4g}, outside the window of {bound:.4g} (take a bound of {1.05 * reached:.3g})"
 
 
 def _over_the_bound(courant: float, dt: float, allowed: float, clock: Clock) -> str:

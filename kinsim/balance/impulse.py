@@ -28,14 +28,14 @@ def static_acceleration(slope: float, s: float, R: float) -> float:
 
 
 @kernel
-def sliding(h: Array, u: Array, h1: Array, s: float, R: float, beta: float, dx: float, dt: float, J: Array) -> None:
-    """Scheme 1: J = dt g h^{n+1}, with g~ where u = 0."""
+def sliding(h: Array, u: Array, pulled: Array, s: float, R: float, beta: float, dx: float, dt: float, J: Array) -> None:
+    """Scheme 1: J = dt g h^{n+1}, with g~ where u = 0; `pulled` is the height that the force acts on."""
     for i in range(J.size):
         if u[i + 1] == 0.0:
             g = static_acceleration(beta * ((h[i + 2] - h[i]) / (2.0 * dx)), s, R)
         else:
             g = acceleration(u[i + 1], s, R)
-        J[i] = dt * g * h1[i]
+        J[i] = dt * g * pulled[i]
 
 
 @kernel
@@ -50,13 +50,14 @@ def find_slow(q: Array, h1: Array, s: float, R: float, dt: float, slow: Flags) -
 
 @kernel
 def stopping(
-    h: Array, q: Array, h1: Array, h1_candidate: Array, slow: Flags,
+    h: Array, q: Array, pulled: Array, h1_candidate: Array, slow: Flags,
     s: float, R: float, beta: float, dx: float, dt: float, J: Array,
 ) -> None:  # fmt: skip
     """Schemes 2 and 3: slow cells blend static and sliding friction, the others slide.
 
     In a slow cell q^n + mu dt g h^{n+1} = 0 by the choice of mu, so that its impulse is
-    (1 - mu) dt g~ (h_{i+1} + 2 h_i + h_{i-1})/4 - q^n.
+    (1 - mu) dt g~ (h_{i+1} + 2 h_i + h_{i-1})/4 - q^n. `pulled` is the height that the force acts on: h^{n+1} of (23)
+    or h^n of (18).
     """
     for i in range(J.size):
         if slow[i]:
@@ -68,4 +69,4 @@ def stopping(
         elif q[i] == 0.0:
             J[i] = 0.0
         else:
-            J[i] = dt * acceleration(q[i], s, R) * h1[i]
+            J[i] = dt * acceleration(q[i], s, R) * pulled[i]

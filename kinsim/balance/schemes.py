@@ -25,8 +25,8 @@ class Scheme(Protocol):
     def choose(self, scene: Scene, now: Stages, dt: float) -> None:
         """Write `at_left` and `at_right`: where cells take the balanced flux."""
 
-    def impulse(self, scene: Scene, now: Stages, dt: float) -> None:
-        """Write `J`."""
+    def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
+        """Write `J`; `pulled`, shape (nx,), is the height that the force acts on."""
 
 
 class Scheme1:
@@ -37,8 +37,8 @@ class Scheme1:
     def choose(self, scene: Scene, now: Stages, dt: float) -> None:
         now.at_left[:] = now.at_right[:] = False
 
-    def impulse(self, scene: Scene, now: Stages, dt: float) -> None:
-        sliding(now.h, now.u, now.h1, scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx, dt, now.J)
+    def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
+        sliding(now.h, now.u, pulled, scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx, dt, now.J)
 
 
 class Scheme2:
@@ -50,10 +50,10 @@ class Scheme2:
         _judge(scene, now, dt)
         now.at_left[:] = now.at_right[:] = True
 
-    def impulse(self, scene: Scene, now: Stages, dt: float) -> None:
+    def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
         s, R = scene.chute.sin, scene.resistance
         inner = now.slow[1:-1]
-        stopping(now.h, now.q, now.h1, now.h1_candidate, inner, s, R, scene.beta, scene.cells.dx, dt, now.J)
+        stopping(now.h, now.q, pulled, now.h1_candidate, inner, s, R, scene.beta, scene.cells.dx, dt, now.J)
 
 
 class Scheme3Cell(Scheme2):

@@ -77,3 +77,16 @@ def split(h: Array, q: Array, h_ghosted: Array, u_ghosted: Array) -> None:
     for i in range(h.size):
         h_ghosted[i + 1] = h[i]
         u_ghosted[i + 1] = q[i] / h[i] if h[i] > 0.0 else 0.0
+
+
+@kernel
+def fastest(h: Array, u: Array, beta: float, faces: bool) -> float:
+    """max(|u| + sqrt(2 beta h)) over the cells and, with `faces`, over the face states (25); h, u are ghosted."""
+    top = 0.0
+    for i in range(h.size):
+        if h[i] > 0.0:
+            top = max(top, abs(u[i]) + np.sqrt(2.0 * beta * h[i]))
+        if faces and i > 0:
+            mean = max(0.5 * (h[i - 1] + h[i]), 0.0)
+            top = max(top, max(abs(u[i - 1]), abs(u[i])) + np.sqrt(2.0 * beta * mean))
+    return top

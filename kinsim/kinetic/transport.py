@@ -46,3 +46,17 @@ def transport(M: Array, B: Array, at_left: Flags, at_right: Flags, xi: Array, la
             left = B[i, j] if at_left[i] else M[i, j]
             a = lam * xi[j]
             f[i, j] = (M[i + 1, j] - a * right) + a * left
+
+
+@kernel
+def outermost(M: Array, dxi: float) -> float:
+    """The outermost node |xi_j| at which M is not zero, 0 if it is zero everywhere."""
+    n = M.shape[1]
+    half = n // 2
+    top = 0
+    for i in range(M.shape[0]):
+        for k in range(half, top, -1):
+            if M[i, half + k - 1] != 0.0 or M[i, half - k] != 0.0:
+                top = k
+                break
+    return (top - 0.5) * dxi if top > 0 else 0.0

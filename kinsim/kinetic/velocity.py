@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -11,16 +12,22 @@ from pydantic import Field
 
 from ..value import Number, Whole, kind, value
 
+Beyond = Literal["stop", "warn"]
+
 
 @value
 class Uniform:
     """`count` equal velocity cells between -bound and bound, an edge at xi = 0, shared by all cells of the x-axis.
 
-    Without a `bound` a run takes 1.05 times the largest |u| + c + dt |g| of a run of the closed-form twin.
+    Attributes:
+        count: Velocity cells, even.
+        bound: Outer edge; None takes 1.05 times the largest |u| + c + dt |g| of a run of the closed-form twin.
+        beyond: When velocities leave the window: "stop" the run, or "warn", go on without them and book the loss.
     """
 
     count: Annotated[Whole, Field(ge=2)] = 128
     bound: Annotated[Number, Field(gt=0)] | None = None
+    beyond: Beyond = "stop"
     kind: Literal["uniform"] = kind("uniform")
 
     def __post_init__(self) -> None:
@@ -29,11 +36,64 @@ class Uniform:
                 f"count = {self.count} is odd, and no velocity cell may straddle xi = 0; take {self.count + 1}"
             )
 
-    def grid(self) -> Grid:
-        """The grid itself; needs a bound."""
+    @property
+    def words(self) -> str:
+        """In a few words."""
+        return f"{self.count} nodes"
+
+    def grid(self, reach: float) -> Grid:
+        """The same grid for every reach."""
         if self.bound is None:
             raise ValueError("a velocity grid needs its bound; simulate finds one, or give it")
         return Grid(self.count, 2.0 * self.bound / self.count)
+
+    def fits(self, grid: Grid, reach: float) -> bool:
+        """The grid stays."""
+        return True
+
+
+@value
+class Window:
+    """Velocity cells of width `dxi` that follow the occupied velocities |xi| <= max(|u| + c); cost follows the support.
+
+    Attributes:
+        dxi: Width of a velocity cell.
+        margin: The window reaches to `margin` times the occupied velocities when it is made. It is made anew when they
+            leave it, or when they need less than half of it.
+    """
+
+    dxi: Annotated[Number, Field(gt=0)]
+    margin: Annotated[Number, Field(ge=1)] = 1.1
+    kind: Literal["window"] = kind("window")
+
+    @property
+    def words(self) -> str:
+        """In a few words."""
+        return f"window of cells {self.dxi:g}"
+
+    def grid(self, reach: float) -> Grid:
+        """A window around velocities up to `reach`."""
+        return Grid(2 * max(math.ceil(self.margin * reach / self.dxi), 2), self.dxi)
+
+    def fits(self, grid: Grid, reach: float) -> bool:
+        """Whether `grid` still serves."""
+        return reach <= grid.bound and (grid.half <= 4 or grid.bound <= 2.0 * self.margin * reach)
+
+
+@value
+class Fitted:
+    """`count` Gauss-Jacobi nodes per cell on the side of xi = 0 that holds less of M; see `kinsim.kinetic.fitted`."""
+
+    count: Annotated[Whole, Field(ge=1, le=64)] = 6
+    kind: Literal["fitted"] = kind("fitted")
+
+    @property
+    def words(self) -> str:
+        """In a few words."""
+        return f"{self.count} fitted nodes"
+
+
+Velocity = Annotated[Uniform | Window | Fitted, Field(discriminator="kind")]
 
 
 @dataclass(frozen=True)
@@ -56,7 +116,8 @@ class Grid:
     @property
     def side(self) -> NDArray[np.float64]:
         """Centres of the cells with xi > 0, outward, shape (count/2,)."""
-        return (np.arange(self.half, dtype=float) + 0.5) * self.dxi
+        centres: NDArray[np.float64] = (np.arange(self.half, dtype=float) + 0.5) * self.dxi
+        return centres
 
     @property
     def xi(self) -> NDArray[np.float64]:

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..balance.interface import Faces
-from ..balance.stages import Array, Stages
+from ..balance.stages import Array, Stages, fastest
 from ..scene import Scene
-from .equilibrium import Equilibrium
-from .force import shift_linear
-from .transport import half_sums, transport
-from .velocity import Grid
+from .equilibrium import Equilibrium, Status
+from .force import Force
+from .transport import half_sums, outermost, transport
+from .velocity import Grid, Uniform, Window
 
 
 class Density:
@@ -23,25 +23,46 @@ class Density:
         B: Density at balanced faces, shape (nx + 1, n), or empty where the scheme has none.
         transported: f after transport, shape (nx, n).
         f: f after the force, shape (nx, n).
+        offset: How far the force moved the nodes of each row of f, shape (nx,); 0 where it moved the values.
+        status: How the equilibrium fared in each row of M.
+        face_status: The same for B.
+        reach: The fastest particle of all states at level n; past the edge of the window, M is cut.
     """
 
-    def __init__(self, scene: Scene, grid: Grid, equilibrium: Equilibrium, uses_balanced: bool) -> None:
-        nx, n = scene.cells.count, grid.count
-        self.grid = grid
+    def __init__(
+        self, scene: Scene, velocity: Uniform | Window, equilibrium: Equilibrium, force: Force, uses_balanced: bool
+    ) -> None:
         self._beta = scene.beta
         self._forced = scene.forced
+        self._velocity = velocity
         self._equilibrium = equilibrium
-        self._xi = grid.xi
-        self._w1, self._w2 = equilibrium.weights(grid)
-        self.M = np.zeros((nx + 2, n))
-        self.B = np.zeros((nx + 1 if uses_balanced else 0, n))
-        self.transported = np.zeros((nx, n))
-        self.f = np.zeros((nx, n)) if scene.forced else self.transported
+        self._force = force
+        self._uses_balanced = uses_balanced
+        self._nx = nx = scene.cells.count
+        self.offset = np.zeros(nx)
+        self.status = Status.empty(nx + 2)
+        self.face_status = Status.empty(nx + 1)
         self._sums: tuple[NDArray[np.float64], ...] = tuple(np.zeros(nx + 2) for _ in range(4))
+        self.reach = 0.0
+        self._allocate(velocity.grid(0.0))
 
-    def equilibrium(self, now: Stages) -> None:
-        """M_i = M(h_i, xi - u_i), (12)."""
-        self._fill(now.h, now.u, now.h, now.u, self.M)
+    def _allocate(self, grid: Grid) -> None:
+        nx, n = self._nx, grid.count
+        self.grid = grid
+        self.xi = grid.xi
+        self._w1, self._w2 = self._equilibrium.weights(grid)
+        self.M = np.zeros((nx + 2, n))
+        self.B = np.zeros((nx + 1 if self._uses_balanced else 0, n))
+        self.transported = np.zeros((nx, n))
+        self.f = np.zeros((nx, n)) if self._forced else self.transported
+
+    def equilibrium(self, now: Stages) -> float:
+        """M_i = M(h_i, xi - u_i), (12); returns its outermost occupied node."""
+        self.reach = fastest(now.h, now.u, self._beta, self._uses_balanced)
+        if not self._velocity.fits(self.grid, self.reach):
+            self._allocate(self._velocity.grid(self.reach))
+        self.fill(now.h, now.u, now.h, now.u, self.M, self.status)
+        return outermost(self.M, self.grid.dxi)
 
     def upwind_flux(self, now: Stages) -> None:
         """F: the half-range sums of M, xi > 0 from the left cell and xi < 0 from the right one, (19)."""
@@ -53,7 +74,7 @@ class Density:
     def balanced_flux(self, now: Stages) -> None:
         """F~: the sums of the density at balanced faces, (25)."""
         at: Faces = now.balanced
-        self._fill(at.h_left, at.u_left, at.h_right, at.u_right, self.B)
+        self.fill(at.h_left, at.u_left, at.h_right, at.u_right, self.B, self.face_status)
         P1, P2, N1, N2 = (sums[:-1] for sums in self._sums)
         half_sums(self.B, self._w1, self._w2, P1, P2, N1, N2)
         np.add(P1, N1, out=now.B1)
@@ -61,13 +82,30 @@ class Density:
 
     def transport(self, now: Stages, lam: float) -> None:
         """f = M - lam xi (M_{i+1/2} - M_{i-1/2}), (23) before the shift."""
-        transport(self.M, self.B, now.at_left, now.at_right, self._xi, lam, self.transported)
+        transport(self.M, self.B, now.at_left, now.at_right, self.xi, lam, self.transported)
+
+    def pulled(self, now: Stages) -> Array:
+        """h^{n+1} in (23), h^n in (18)."""
+        return now.h[1:-1] if self._force.derivative else now.h1
 
     def force(self, now: Stages) -> float:
-        """f(xi + J/h^{n+1}) <- f(xi), (23); returns the mass that left the window, per dx."""
+        """Hand J over to f, (18) or (23); returns the mass that left the window, per dx."""
         if not self._forced:
             return 0.0
-        return shift_linear(self.transported, now.J, now.h1, self.grid.dxi, self.f)
+        return self._force(self.transported, self.M[1:-1], now.J, self.pulled(now), self.grid.dxi, self.f, self.offset)
 
-    def _fill(self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, rows: Array) -> None:
-        self._equilibrium.fill(h_left, u_left, h_right, u_right, self._beta, self.grid, rows)
+    def cut(self, now: Stages) -> float:
+        """The mass of M outside the window, per dx."""
+        return float(np.maximum(now.h[1:-1] - self.grid.dxi * self.M[1:-1].sum(axis=1), 0.0).sum())
+
+    def fill(self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, rows: Array, status: Status) -> None:
+        """Write rows of the equilibrium, xi > 0 from the left states and xi < 0 from the right ones."""
+        self._equilibrium.fill(h_left, u_left, h_right, u_right, self._beta, self.grid, rows, status)
+
+    def sums(self, f: Array, mass: Array, momentum: Array) -> None:
+        """Sums of f and xi f over the nodes, (20), into arrays of shape (nx,)."""
+        half = self.grid.half
+        positive, negative = f[:, half:], f[:, half - 1 :: -1]
+        dxi, side = self.grid.dxi, self.grid.side
+        np.multiply((positive + negative).sum(axis=1), dxi, out=mass)
+        np.multiply(((positive - negative) * side).sum(axis=1), dxi, out=momentum)

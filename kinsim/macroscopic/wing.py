@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..balance.interface import Faces
-from ..balance.stages import Array, Stages
+from ..balance.stages import Array, Stages, fastest
 from ..scene import Scene
 from .half_moments import flux_closed
 
@@ -14,8 +14,9 @@ class ClosedForm:
     def __init__(self, scene: Scene) -> None:
         self._beta = scene.beta
 
-    def equilibrium(self, now: Stages) -> None:
-        """M of (12) is known without being formed."""
+    def equilibrium(self, now: Stages) -> float:
+        """M of (12) is known without being formed; its fastest particle is |u| + c."""
+        return fastest(now.h, now.u, self._beta, False)
 
     def upwind_flux(self, now: Stages) -> None:
         """F of (24)."""
@@ -27,6 +28,10 @@ class ClosedForm:
 
     def transport(self, now: Stages, lam: float) -> None:
         """There is no density to transport."""
+
+    def pulled(self, now: Stages) -> Array:
+        """h^{n+1}, (24)."""
+        return now.h1
 
     def force(self, now: Stages) -> float:
         """There is no density to shift, and none is lost."""

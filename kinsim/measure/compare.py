@@ -109,7 +109,11 @@ def method_name(method: Kinetic | Macroscopic) -> str:
     if method.scheme == 3 and method.coupling != "cell":
         words += f" by {method.coupling}"
     if isinstance(method, Kinetic):
-        words += f", {method.velocity.count} nodes"
+        words += f", {method.velocity.words}"
         if method.equilibrium != "cell-average":
             words += f", {method.equilibrium}"
+        if method.force != "shift-linear":
+            words += f", {method.force}"
+        if method.projection != "flux-difference":
+            words += f", {method.projection}"
     return words

@@ -1,0 +1,170 @@
+"""The minimiser of the discrete kinetic entropy."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...kernel import kernel
+from ..velocity import Grid
+from .few_nodes import few_nodes
+from .rows import Array, put
+from .status import CONVERGED, Status
+
+LONGEST = 60
+"""Newton iterations before a fall-back is taken."""
+
+CLOSE = 1e-8
+"""Defect at which Newton hands over to `polish`; at the minimum the entropy changes only by its square."""
+
+
+@dataclass(frozen=True)
+class Entropic:
+    """The density of least entropy, sum of H(f, xi) = xi^2 f/2 + (pi^2 beta^2/6) f^3, with given mass and momentum.
+
+    It is f_j = sqrt(max(2 (A + B xi_j) - xi_j^2, 0)) / (pi beta), the semicircle with two shifted parameters, found by
+    a damped Newton iteration on the convex dual. Where the support is thinner than the grid two nodes carry it exactly.
+    """
+
+    least = 4
+
+    def fill(
+        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, grid: Grid,
+        rows: Array, status: Status,
+    ) -> None:  # fmt: skip
+        entropic(
+            h_left, u_left, h_right, u_right, beta, grid.dxi,
+            rows, status.iterations, status.residual, status.fallback,
+        )  # fmt: skip
+
+    def weights(self, grid: Grid) -> tuple[Array, Array]:
+        return grid.dxi * grid.side, grid.dxi * grid.side**2
+
+
+@kernel
+def entropic(
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, dxi: float, rows: Array,
+    iterations: NDArray[np.int64], residual: Array, fallback: NDArray[np.int64],
+) -> None:  # fmt: skip
+    """Fill rows, and report the worse of the two states of each."""
+    half = rows.shape[1] // 2
+    P, N = np.empty(half), np.empty(half)
+    for i in range(rows.shape[0]):
+        u = u_left[i]
+        tries, defect, fell = entropic_sides(h_left[i], abs(u), beta, dxi, P, N)
+        put(P if u >= 0.0 else N, rows[i], True)
+        if h_right[i] != h_left[i] or u_right[i] != u:
+            u = u_right[i]
+            more, rest, also = entropic_sides(h_right[i], abs(u), beta, dxi, P, N)
+            tries, defect, fell = max(tries, more), max(defect, rest), max(fell, also)
+        put(N if u >= 0.0 else P, rows[i], False)
+        iterations[i], residual[i], fallback[i] = tries, defect, fell
+
+
+@kernel
+def dual(kappa: float, b: float, u: float, c: float, dxi: float, half: int) -> tuple[float, ...]:
+    """Dual value, its two derivatives and its three second derivatives at f_j = c sqrt(p_j)/(pi beta).
+
+    p = kappa + 2 b y - y^2 with y = (xi - u)/c; the value is (2/3) sum eta p^(3/2) - kappa, eta = (2/pi) dxi/c, and its
+    derivatives are the defects of mass over h and, twice, of momentum about u over h c.
+    """
+    eta = 2.0 / math.pi * (dxi / c)
+    value, g0, g1, h00, h01, h11 = -kappa, -1.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(half):
+        yp, yn = ((k + 0.5) * dxi - u) / c, (-(k + 0.5) * dxi - u) / c
+        pp, pn = max(kappa + (2.0 * b - yp) * yp, 0.0), max(kappa + (2.0 * b - yn) * yn, 0.0)
+        rp, rn = eta * math.sqrt(pp), eta * math.sqrt(pn)
+        ip = eta / math.sqrt(pp) if pp > 0.0 else 0.0
+        in_ = eta / math.sqrt(pn) if pn > 0.0 else 0.0
+        value += (2.0 / 3.0) * (rp * pp + rn * pn)
+        g0 += rp + rn
+        g1 += 2.0 * (rp * yp + rn * yn)
+        h00 += 0.5 * (ip + in_)
+        h01 += ip * yp + in_ * yn
+        h11 += 2.0 * (ip * yp * yp + in_ * yn * yn)
+    return value, g0, g1, h00, h01, h11
+
+
+@kernel
+def entropic_sides(h: float, u: float, beta: float, dxi: float, P: Array, N: Array) -> tuple[int, float, int]:
+    """The two sides of the minimiser, u >= 0, with iterations, residual and fall-back."""
+    half = P.size
+    P[:] = 0.0
+    N[:] = 0.0
+    if not h > 0.0:
+        return 0, 0.0, CONVERGED
+    c = math.sqrt(2.0 * beta * h)
+    kappa, b = 1.0, 0.0
+    if two_nodes_are_optimal(h, u, beta, dxi, half):
+        few_nodes(h, u, beta, dxi, False, P, N)
+        return 0, 0.0, CONVERGED
+    value, g0, g1, h00, h01, h11 = dual(kappa, b, u, c, dxi, half)
+    for tries in range(LONGEST):
+        if abs(g0) <= CLOSE and abs(g1) <= CLOSE:
+            for k in range(half):
+                yp, yn = ((k + 0.5) * dxi - u) / c, (-(k + 0.5) * dxi - u) / c
+                P[k] = c / (math.pi * beta) * math.sqrt(max(kappa + (2.0 * b - yp) * yp, 0.0))
+                N[k] = c / (math.pi * beta) * math.sqrt(max(kappa + (2.0 * b - yn) * yn, 0.0))
+            return tries, polish(h, u, c, dxi, P, N), CONVERGED
+        det = h00 * h11 - h01 * h01
+        if det > 1e-14 * h00 * h11:
+            dk, db = (h01 * g1 - h11 * g0) / det, (h01 * g0 - h00 * g1) / det
+        else:
+            dk, db = -g0, -g1
+        slope = g0 * dk + g1 * db
+        size = 1.0
+        while True:
+            tried = dual(kappa + size * dk, b + size * db, u, c, dxi, half)
+            descends = tried[0] <= value + 1e-4 * size * slope
+            if descends or abs(tried[1]) + abs(tried[2]) < 0.5 * (abs(g0) + abs(g1)) or size < 1e-10:
+                break
+            size *= 0.5
+        kappa, b = kappa + size * dk, b + size * db
+        value, g0, g1, h00, h01, h11 = tried
+    fell = few_nodes(h, u, beta, dxi, False, P, N)
+    return LONGEST, max(abs(g0), 0.5 * abs(g1)), fell
+
+
+@kernel
+def polish(h: float, u: float, c: float, dxi: float, P: Array, N: Array) -> float:
+    """Multiply by 1 + a + b y so that mass and momentum hold to rounding; returns what is left of their defect."""
+    weight = dxi / h
+    defect = 1.0
+    for sweep in range(3):
+        s0, s1, s2 = 0.0, 0.0, 0.0
+        for k in range(P.size):
+            yp, yn = ((k + 0.5) * dxi - u) / c, (-(k + 0.5) * dxi - u) / c
+            fp, fn = weight * P[k], weight * N[k]
+            s0 += fp + fn
+            s1 += fp * yp + fn * yn
+            s2 += fp * yp * yp + fn * yn * yn
+        defect = max(abs(1.0 - s0), abs(s1))
+        det = s0 * s2 - s1 * s1
+        if sweep == 2 or defect <= 4e-16 or not det > 0.0:
+            break
+        a, b = ((1.0 - s0) * s2 + s1 * s1) / det, (-s1 * s0 - (1.0 - s0) * s1) / det
+        for k in range(P.size):
+            P[k] *= 1.0 + (a + b * (((k + 0.5) * dxi - u) / c))
+            N[k] *= 1.0 + (a + b * ((-(k + 0.5) * dxi - u) / c))
+    return defect
+
+
+@kernel
+def two_nodes_are_optimal(h: float, u: float, beta: float, dxi: float, half: int) -> bool:
+    """Whether the pair of nodes around u with the right mass and momentum satisfies the conditions of the minimum.
+
+    With f on the nodes j and j + 1 only, 2 (A + B xi) = xi^2 + (pi beta f)^2 there; elsewhere it may not exceed xi^2.
+    """
+    low = math.floor(u / dxi - 0.5)
+    if low + 1 >= half:
+        return False
+    x0, x1 = (low + 0.5) * dxi, (low + 1.5) * dxi
+    share = (u - x0) / dxi
+    f0, f1 = h * (1.0 - share) / dxi, h * share / dxi
+    left = x0 * x0 + (math.pi * beta * f0) ** 2
+    right = x1 * x1 + (math.pi * beta * f1) ** 2
+    step = right - left
+    return left - step <= (x0 - dxi) ** 2 and right + step <= (x1 + dxi) ** 2

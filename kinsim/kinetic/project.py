@@ -1,0 +1,56 @@
+"""The projection (20), read in two ways: where U^{n+1} comes from."""
+
+from __future__ import annotations
+
+from typing import Literal, Protocol
+
+import numpy as np
+
+from ..balance.stages import Stages
+from .wing import Density
+
+
+class Projection(Protocol):
+    """Where the moments come from, after transport and after the force."""
+
+    @property
+    def explained(self) -> str:
+        """One line."""
+
+    def after_transport(self, now: Stages, density: Density | None) -> None:
+        """Settle `h1` and `qhat`, which hold U^n - lam (F_{i+1/2} - F_{i-1/2})."""
+
+    def after_force(self, now: Stages, density: Density | None) -> None:
+        """Write `q1`, and settle `h1`."""
+
+
+class FluxDifference:
+    """U^{n+1} = U^n - lam (F_{i+1/2} - F_{i-1/2}) + (0, J) with the grid's own half-range sums F."""
+
+    explained = "U^n - lam (F_{i+1/2} - F_{i-1/2}) + (0, J) with the sums of the grid, (24)"
+
+    def after_transport(self, now: Stages, density: Density | None) -> None:
+        pass
+
+    def after_force(self, now: Stages, density: Density | None) -> None:
+        np.add(now.qhat, now.J, out=now.q1)
+
+
+class Resummed:
+    """U^{n+1} is summed anew from f, the letter of (20); repeats the sampling defect in every step."""
+
+    explained = "sums of f taken anew, the letter of (20)"
+
+    def after_transport(self, now: Stages, density: Density | None) -> None:
+        if density is not None:
+            density.sums(density.transported, now.h1, now.qhat)
+
+    def after_force(self, now: Stages, density: Density | None) -> None:
+        if density is not None:
+            density.sums(density.f, now.h1, now.q1)
+            np.add(now.q1, density.offset * now.h1, out=now.q1)
+
+
+ProjectionName = Literal["flux-difference", "re-summed"]
+
+PROJECTIONS: dict[ProjectionName, Projection] = {"flux-difference": FluxDifference(), "re-summed": Resummed()}
