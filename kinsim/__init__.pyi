@@ -1,8 +1,9 @@
 from .clock import Courant as Courant
 from .clock import Fixed as Fixed
-from .dump import Dump as Dump
 from .errors import InputError as InputError
+from .kinetic.velocity import Fitted as Fitted
 from .kinetic.velocity import Uniform as Uniform
+from .kinetic.velocity import Window as Window
 from .measure.compare import compare as compare
 from .method import Kinetic as Kinetic
 from .method import Macroscopic as Macroscopic
@@ -23,5 +24,6 @@ from .scene import Scene as Scene
 from .simulate import simulate as simulate
 from .step import Step as Step
 from .step import step as step
+from .watch.dump import Dump as Dump
 
 __version__: str

@@ -85,3 +85,6 @@ class Replay:
     def progress(self, step: int, t: float) -> float:
         """The share that is done."""
         return step / len(self.dts)
+
+
+AnyClock = Fixed | Courant | Replay

@@ -20,26 +20,12 @@ from .clock import Clock
 from .method import Kinetic, Macroscopic
 from .scene import Scene
 from .store import write_netcdf
+from .watch.ledger import COLUMNS, DENSITY_COLUMNS
 
 if TYPE_CHECKING:
     import xarray
 
 VerdictKind = Literal["finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "interrupted"]
-
-LEDGER = {
-    "mass": "mass in the domain",
-    "momentum": "momentum in the domain",
-    "h_min": "least height since the row before",
-    "u_max": "largest |u| since the row before",
-    "courant": "largest Courant number since the row before",
-    "inflow_left": "mass that entered through the left end so far",
-    "inflow_right": "mass that entered through the right end so far",
-    "coupling_drift": "mass made so far at faces whose two cells took different fluxes",
-    "window_loss": "mass that f lost so far over the edge of the velocity window",
-    "sampling_mass": "mass of f less mass of the state",
-    "sampling_momentum": "momentum of f less momentum of the state",
-}
-"""The columns of the ledger; mass(t) - mass(0) = inflow_left + inflow_right + coupling_drift to rounding."""
 
 
 @dataclass(frozen=True)
@@ -73,6 +59,7 @@ class Run:
         dt: Length of every step, shape (steps,).
         entries: Ledger columns, each of shape (nt,).
         dumps: Densities that were asked for, by name.
+        causes: The moment ledger, if it was asked for; see `kinsim.watch.causes`.
         verdict: How it ended.
         wall_time: Seconds spent in the time loop, compiling excluded.
     """
@@ -88,6 +75,7 @@ class Run:
     verdict: Verdict
     wall_time: float
     dumps: Mapping[str, xarray.DataArray] = field(default_factory=dict)
+    causes: xarray.Dataset | None = None
 
     def __repr__(self) -> str:
         return (
@@ -111,10 +99,12 @@ class Run:
 
     @cached_property
     def ledger(self) -> xarray.Dataset:
-        """The books over the saved times; see `LEDGER` for the columns."""
+        """The books over the saved times; see `kinsim.watch.ledger` for the columns."""
         import xarray
 
-        columns = {name: ("t", column, _attrs(LEDGER[name])) for name, column in self.entries.items()}
+        columns = {
+            name: ("t", column, _attrs((COLUMNS | DENSITY_COLUMNS)[name])) for name, column in self.entries.items()
+        }
         return xarray.Dataset(columns, coords={"t": ("t", self.t, _attrs("time"))})
 
     @property
@@ -136,6 +126,8 @@ class Run:
         coords = {"t": ("t", self.t, _attrs("time")), "x": ("x", self.x, _attrs("cell centre along the chute"))}
         dumped = {name: _own_axes(name, array) for name, array in self.dumps.items()}
         dataset = xarray.Dataset(state, coords=coords).merge(self.ledger)
+        if self.causes is not None:
+            dataset = dataset.merge(self.causes.rename(step="cause_step", sum="cause_sum", total="cause_total"))
         return dataset.assign(dumped).assign_attrs(self.provenance())
 
     def to_netcdf(self, path: str | Path) -> Path:

@@ -26,6 +26,7 @@ class Density:
         offset: How far the force moved the nodes of each row of f, shape (nx,); 0 where it moved the values.
         status: How the equilibrium fared in each row of M.
         face_status: The same for B.
+        lost: Mass that the force pushed out of the window in the last step, per dx.
         reach: The fastest particle of all states at level n; past the edge of the window, M is cut.
     """
 
@@ -44,6 +45,7 @@ class Density:
         self.face_status = Status.empty(nx + 1)
         self._sums: tuple[NDArray[np.float64], ...] = tuple(np.zeros(nx + 2) for _ in range(4))
         self.reach = 0.0
+        self.lost = 0.0
         self._allocate(velocity.grid(0.0))
 
     def _allocate(self, grid: Grid) -> None:
@@ -90,13 +92,30 @@ class Density:
 
     def force(self, now: Stages) -> float:
         """Hand J over to f, (18) or (23); returns the mass that left the window, per dx."""
-        if not self._forced:
-            return 0.0
-        return self._force(self.transported, self.M[1:-1], now.J, self.pulled(now), self.grid.dxi, self.f, self.offset)
+        if self._forced:
+            self.lost = self._push(self.transported, self.M[1:-1], now, self.f)
+        return self.lost
 
     def cut(self, now: Stages) -> float:
         """The mass of M outside the window, per dx."""
         return float(np.maximum(now.h[1:-1] - self.grid.dxi * self.M[1:-1].sum(axis=1), 0.0).sum())
+
+    def on_grid(self, grid: Grid, now: Stages) -> Array:
+        """M of the cells, shape (nx, grid.count), on another grid."""
+        h, u = now.h[1:-1], now.u[1:-1]
+        rows = np.empty((h.size, grid.count))
+        self._equilibrium.fill(h, u, h, u, self._beta, grid, rows, Status.empty(h.size))
+        return rows
+
+    def forced_on(self, grid: Grid, now: Stages) -> Array:
+        """f after the force as it would be on a wider grid with the same cells."""
+        pad = ((0, 0), ((grid.count - self.grid.count) // 2,) * 2)
+        out = np.empty((self._nx, grid.count))
+        self._push(np.pad(self.transported, pad), np.pad(self.M[1:-1], pad), now, out)
+        return out
+
+    def _push(self, f: Array, M: Array, now: Stages, out: Array) -> float:
+        return self._force(f, M, now.J, self.pulled(now), self.grid.dxi, out, self.offset)
 
     def fill(self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, rows: Array, status: Status) -> None:
         """Write rows of the equilibrium, xi > 0 from the left states and xi < 0 from the right ones."""

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from .balance.stages import Array
-from .value import Number, Whole, value
+from ..balance.stages import Array
+from ..value import Number, Whole, value
 
 if TYPE_CHECKING:
     import xarray
 
-    from .kinetic.wing import Density
-    from .scene import Scene
+    from ..kinetic.wing import Density
+    from ..scene import Scene
 
 Stage = Literal["equilibrium", "transport", "force"]
 
