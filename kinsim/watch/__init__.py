@@ -1,0 +1,1 @@
+"""What is noted down while a run goes on: the ledger, causes of change, densities."""

@@ -1,0 +1,153 @@
+"""The books of a run over its saved times."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from ..balance.stages import Array
+from ..kernel import kernel
+from ..kinetic.equilibrium import Status
+from ..kinetic.shift import shift_linear
+from ..kinetic.wing import Density
+from ..scene import Scene
+from ..step import Books, Stepper
+
+COLUMNS = {
+    "mass": "mass in the domain",
+    "momentum": "momentum in the domain",
+    "h_min": "least height since the row before",
+    "u_max": "largest |u| since the row before",
+    "courant": "largest Courant number since the row before",
+    "inflow_left": "mass that entered through the left end so far",
+    "inflow_right": "mass that entered through the right end so far",
+    "coupling_drift": "mass made so far at faces whose two cells took different fluxes",
+    "window_loss": "mass that f lost so far over the edge of the velocity window",
+}
+"""mass(t) - mass(0) = inflow_left + inflow_right + coupling_drift to rounding, unless U is summed anew from f."""
+
+DENSITY_COLUMNS = {
+    "sampling_mass": "mass of f less mass of the state",
+    "sampling_momentum": "momentum of f less momentum of the state",
+    "f_min": "least entry of f since the row before",
+    "f_distance": "integral of |f - M| over x and xi, M of the new state",
+    "f_tail": "mass of f where M of the new state is zero",
+    "fallbacks": "cells times steps so far in which the equilibrium fell back to few nodes",
+    "iterations": "most iterations of the equilibrium in a cell since the row before",
+    "residual": "largest relative defect that the equilibrium left since the row before",
+}
+"""Further columns of a kinetic run on a velocity grid."""
+
+
+class Survey(NamedTuple):
+    """A look over a state: extremes, and the first cell that is not finite, or -1."""
+
+    h_min: float
+    u_max: float
+    fastest: float
+    q_max: float
+    h_max: float
+    bad: int
+
+
+class Ledger:
+    """Notes every step, and makes a row of it when the state is saved."""
+
+    def __init__(self, scene: Scene, stepper: Stepper) -> None:
+        self._scene, self._stepper = scene, stepper
+        self._rows: list[dict[str, float]] = []
+        self._booked = Books(0.0, 0.0, 0.0, 0.0)
+        self._fallbacks = 0
+        self.least_height = math.inf
+        self.least_density = 0.0
+        self.worst_courant = 0.0
+        self._h_min = self._f_min = math.inf
+        self._u_max = self._courant = self._residual = 0.0
+        self._iterations = 0
+
+    def start(self, h: Array, q: Array) -> None:
+        """The row of the initial state."""
+        first = survey(h, q, self._scene.beta)
+        self._h_min, self._u_max = first[0], first[1]
+        self.save(h, q, started=False)
+
+    def note(self, look: Survey, courant: float, books: Books) -> None:
+        """A step was taken."""
+        self._h_min, self._u_max = min(self._h_min, look.h_min), max(self._u_max, look.u_max)
+        self._courant = max(self._courant, courant)
+        self.least_height = min(self.least_height, look.h_min)
+        self.worst_courant = max(self.worst_courant, courant)
+        self._booked = Books(*map(sum, zip(self._booked, books, strict=True)))
+        density = self._stepper.density
+        if density is not None:
+            self._f_min = min(self._f_min, float(density.f.min()))
+            self.least_density = min(self.least_density, self._f_min)
+            self._note_status(density.status)
+
+    def save(self, h: Array, q: Array, started: bool = True) -> None:
+        """Make a row of what was noted since the row before."""
+        dx = self._scene.cells.dx
+        row = {
+            "mass": math.fsum(h) * dx, "momentum": math.fsum(q) * dx,
+            "h_min": self._h_min, "u_max": self._u_max, "courant": self._courant, **self._booked._asdict(),
+        }  # fmt: skip
+        density = self._stepper.density
+        if density is not None:
+            row |= dict.fromkeys(DENSITY_COLUMNS, 0.0)
+            if started:
+                row |= departure(density, h, q, dx)
+                row |= {"f_min": self._f_min, "fallbacks": self._fallbacks}
+                row |= {"iterations": self._iterations, "residual": self._residual}
+        self._rows.append(row)
+        self._forget()
+
+    def columns(self) -> dict[str, Array]:
+        """The ledger, each column of shape (nt,)."""
+        return {name: np.array([row[name] for row in self._rows]) for name in self._rows[0]}
+
+    def _note_status(self, status: Status) -> None:
+        self._fallbacks += int(np.count_nonzero(status.fallback[1:-1]))
+        self._iterations = max(self._iterations, int(status.iterations.max()))
+        self._residual = max(self._residual, float(status.residual.max()))
+
+    def _forget(self) -> None:
+        self._h_min = self._f_min = math.inf
+        self._u_max = self._courant = self._residual = 0.0
+        self._iterations = 0
+
+
+def departure(density: Density, h: Array, q: Array, dx: float) -> dict[str, float]:
+    """How f, after the force, departs from the new state (h, q) and from its equilibrium."""
+    u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
+    M = np.empty_like(density.f)
+    density.fill(h, u, h, u, M, Status.empty(h.size))
+    f = density.f
+    if density.offset.any():
+        f = np.empty_like(density.f)
+        shift_linear(density.f, density.offset, np.ones_like(h), density.grid.dxi, f)
+    cell = density.grid.dxi * dx
+    row_mass = density.f.sum(axis=1)
+    momentum = math.fsum(density.f @ density.xi + density.offset * row_mass)
+    return {
+        "sampling_mass": math.fsum(row_mass) * cell - math.fsum(h) * dx,
+        "sampling_momentum": momentum * cell - math.fsum(q) * dx,
+        "f_distance": float(np.abs(f - M).sum()) * cell,
+        "f_tail": float(f[M == 0.0].sum()) * cell,
+    }
+
+
+@kernel
+def survey(h: Array, q: Array, beta: float) -> tuple[float, float, float, float, float, int]:
+    """The entries of a `Survey` of the state (h, q), each of shape (nx,)."""
+    h_min, u_max, fastest, q_max, h_max = np.inf, 0.0, 0.0, 0.0, 0.0
+    for i in range(h.size):
+        if not (np.isfinite(h[i]) and np.isfinite(q[i])):
+            return h_min, u_max, fastest, q_max, h_max, i
+        h_min, h_max, q_max = min(h_min, h[i]), max(h_max, h[i]), max(q_max, abs(q[i]))
+        if h[i] > 0.0:
+            u = abs(q[i] / h[i])
+            u_max = max(u_max, u)
+            fastest = max(fastest, u + np.sqrt(2.0 * beta * h[i]))
+    return h_min, u_max, fastest, q_max, h_max, -1
