@@ -29,6 +29,9 @@ class Wing(Protocol):
     def equilibrium(self, now: Stages) -> float:
         """M(h, xi - u), (12); returns the fastest velocity it occupies, which (28) bounds."""
 
+    def half_moments(self, now: Stages) -> Array:
+        """First and second moment of M over xi > 0, then over xi < 0, of each ghosted cell, shape (4, nx + 2)."""
+
     def upwind_flux(self, now: Stages) -> None:
         """Write F1, F2 from the upwind face states."""
 
@@ -122,6 +125,7 @@ class Step:
     Attributes:
         h, u: State at level n.
         upwind, balanced: Face states (19) and (25); `balanced` is None where the scheme has none.
+        half: First and second moment of M over xi > 0, then over xi < 0, of each cell, shape (4, nx).
         flux: F1, F2 of the upwind states, shape (2, nx + 1).
         balanced_flux: The same of the balanced states, or None.
         slow: Cells in the first branch of schemes 2 and 3.
@@ -140,6 +144,7 @@ class Step:
     u: Array
     upwind: Faces
     balanced: Faces | None
+    half: Array
     flux: Array
     balanced_flux: Array | None
     slow: np.ndarray
@@ -189,7 +194,8 @@ def step(scene: Scene, method: Kinetic | Macroscopic, h: Array, q: Array, dt: fl
     balanced = stepper.scheme.uses_balanced
     return Step(
         h=now.h[1:-1], u=now.u[1:-1], upwind=now.upwind, balanced=now.balanced if balanced else None,
-        flux=np.array([now.F1, now.F2]), balanced_flux=np.array([now.B1, now.B2]) if balanced else None,
+        half=stepper.wing.half_moments(now)[:, 1:-1], flux=np.array([now.F1, now.F2]),
+        balanced_flux=np.array([now.B1, now.B2]) if balanced else None,
         slow=now.slow[1:-1], h1=now.h1, q1=now.q1, qhat=now.qhat, impulse=now.J,
         xi=density.xi if density else None, M=density.M[1:-1] if density else None,
         f_transport=density.transported if density else None, f_force=density.f if density else None,

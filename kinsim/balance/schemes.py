@@ -30,7 +30,7 @@ class Scheme(Protocol):
 
 
 class Scheme1:
-    """Upwind faces, sliding friction; never rests."""
+    """Upwind faces (19) and sliding friction; never rests."""
 
     uses_balanced = False
 
@@ -42,7 +42,7 @@ class Scheme1:
 
 
 class Scheme2:
-    """Balanced faces everywhere; slow cells stop and start."""
+    """Balanced faces (25) everywhere; slow cells stop and start, (21), (22)."""
 
     uses_balanced = True
 
@@ -57,7 +57,7 @@ class Scheme2:
 
 
 class Scheme3Cell(Scheme2):
-    """The paper's coupling: each cell chooses its two fluxes alone, slow cells the balanced ones; not conservative."""
+    """Scheme 3 by cell, the paper's: slow cells take balanced fluxes, the others upwind ones; not conservative."""
 
     def choose(self, scene: Scene, now: Stages, dt: float) -> None:
         _judge(scene, now, dt)
@@ -65,7 +65,7 @@ class Scheme3Cell(Scheme2):
 
 
 class Scheme3Face(Scheme2):
-    """One flux per face, balanced where both its cells are slow; conservative."""
+    """Scheme 3 by face: one flux per face, balanced where both its cells are slow; conservative."""
 
     def choose(self, scene: Scene, now: Stages, dt: float) -> None:
         _judge(scene, now, dt)

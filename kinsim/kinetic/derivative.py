@@ -15,9 +15,8 @@ Array = NDArray[np.float64]
 
 
 class DerivativeUpwind:
-    """(18) with the one-sided difference from where the force pushes."""
+    """Derivative (18) of M^n by the one-sided difference from where the force pushes."""
 
-    explained = "upwind difference of M^n, (18)"
     derivative = True
 
     def __call__(self, f: Array, M: Array, J: Array, h: Array, dxi: float, out: Array, offset: Array) -> float:
@@ -25,9 +24,8 @@ class DerivativeUpwind:
 
 
 class DerivativeCentred:
-    """(18) with the centred difference; for study."""
+    """Derivative (18) of M^n by the centred difference; for study."""
 
-    explained = "centred difference of M^n, (18), for study"
     derivative = True
 
     def __call__(self, f: Array, M: Array, J: Array, h: Array, dxi: float, out: Array, offset: Array) -> float:

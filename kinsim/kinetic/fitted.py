@@ -80,6 +80,11 @@ class FittedMeasure:
         """The measure is known by (h, u) alone; its fastest particle is |u| + c."""
         return fastest(now.h, now.u, self._beta, False)
 
+    def half_moments(self, now: Stages) -> Array:
+        """Moments over xi > 0 and xi < 0 of each ghosted cell, shape (4, nx + 2)."""
+        pairs = zip(now.h, now.u, strict=True)
+        return np.array([half_moments_fitted(h, u, self._beta, self._s, self._W) for h, u in pairs]).T
+
     def upwind_flux(self, now: Stages) -> None:
         """F from the nodes of the upwind states, (19)."""
         self._flux(now.upwind, now.F1, now.F2)

@@ -17,10 +17,6 @@ class Force(Protocol):
     """A force step."""
 
     @property
-    def explained(self) -> str:
-        """One line."""
-
-    @property
     def derivative(self) -> bool:
         """Whether it acts on M^n as in (18), with h^n in the impulse, and not on f as in (23), with h^{n+1}."""
 

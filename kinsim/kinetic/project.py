@@ -13,10 +13,6 @@ from .wing import Density
 class Projection(Protocol):
     """Where the moments come from, after transport and after the force."""
 
-    @property
-    def explained(self) -> str:
-        """One line."""
-
     def after_transport(self, now: Stages, density: Density | None) -> None:
         """Settle `h1` and `qhat`, which hold U^n - lam (F_{i+1/2} - F_{i-1/2})."""
 
@@ -25,9 +21,7 @@ class Projection(Protocol):
 
 
 class FluxDifference:
-    """U^{n+1} = U^n - lam (F_{i+1/2} - F_{i-1/2}) + (0, J) with the grid's own half-range sums F."""
-
-    explained = "U^n - lam (F_{i+1/2} - F_{i-1/2}) + (0, J) with the sums of the grid, (24)"
+    """U^n - lam (F_{i+1/2} - F_{i-1/2}) + (0, J), (24), with the half-range sums F of the grid."""
 
     def after_transport(self, now: Stages, density: Density | None) -> None:
         pass
@@ -37,9 +31,7 @@ class FluxDifference:
 
 
 class Resummed:
-    """U^{n+1} is summed anew from f, the letter of (20); repeats the sampling defect in every step."""
-
-    explained = "sums of f taken anew, the letter of (20)"
+    """Sums of f taken anew, the letter of (20); repeats the sampling defect in every step."""
 
     def after_transport(self, now: Stages, density: Density | None) -> None:
         if density is not None:

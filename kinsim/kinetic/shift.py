@@ -11,9 +11,8 @@ Array = NDArray[np.float64]
 
 
 class ShiftExact:
-    """(23) by moving the nodes: the values stay, node j of row i stands at xi_j + J_i/h_i^{n+1}."""
+    """Shift (23) by moving the nodes: values stay, node j of row i stands at xi_j + J_i/h_i^{n+1}."""
 
-    explained = "exact translation of the nodes, (23)"
     derivative = False
 
     def __call__(self, f: Array, M: Array, J: Array, h: Array, dxi: float, out: Array, offset: Array) -> float:
@@ -24,9 +23,8 @@ class ShiftExact:
 
 
 class ShiftLinear:
-    """(23) by a conservative linear remap; exact in mass and momentum, never negative."""
+    """Shift (23) by a conservative linear remap; exact in mass and momentum, never negative."""
 
-    explained = "conservative linear remap, (23)"
     derivative = False
 
     def __call__(self, f: Array, M: Array, J: Array, h: Array, dxi: float, out: Array, offset: Array) -> float:
@@ -34,14 +32,13 @@ class ShiftLinear:
 
 
 class ShiftPFC:
-    """(23) by the positive and flux-conservative remap of third order.
+    """Shift (23) by the positive and flux-conservative remap of third order.
 
     After Filbet, Sonnendruecker and Bertrand (2001), Conservative numerical schemes for the Vlasov equation, DOI
     10.1006/jcph.2001.6818. Without its limiter the remap is exact in mass and momentum; where the limiter acts, at the
     rim of the support, the momentum of f errs, and the ledger books it.
     """
 
-    explained = "conservative, positive remap of third order (PFC), (23)"
     derivative = False
 
     def __call__(self, f: Array, M: Array, J: Array, h: Array, dxi: float, out: Array, offset: Array) -> float:

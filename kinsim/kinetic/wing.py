@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..balance.interface import Faces
 from ..balance.stages import Array, Stages, fastest
@@ -43,7 +42,7 @@ class Density:
         self.offset = np.zeros(nx)
         self.status = Status.empty(nx + 2)
         self.face_status = Status.empty(nx + 1)
-        self._sums: tuple[NDArray[np.float64], ...] = tuple(np.zeros(nx + 2) for _ in range(4))
+        self._sums = np.zeros((4, nx + 2))
         self.reach = 0.0
         self.lost = 0.0
         self._allocate(velocity.grid(0.0))
@@ -66,6 +65,11 @@ class Density:
         self.fill(now.h, now.u, now.h, now.u, self.M, self.status)
         return outermost(self.M, self.grid.dxi)
 
+    def half_moments(self, now: Stages) -> Array:
+        """The half-range sums of M in each ghosted cell, shape (4, nx + 2)."""
+        half_sums(self.M, self._w1, self._w2, *self._sums)
+        return self._sums.copy()
+
     def upwind_flux(self, now: Stages) -> None:
         """F: the half-range sums of M, xi > 0 from the left cell and xi < 0 from the right one, (19)."""
         P1, P2, N1, N2 = self._sums
@@ -77,7 +81,7 @@ class Density:
         """F~: the sums of the density at balanced faces, (25)."""
         at: Faces = now.balanced
         self.fill(at.h_left, at.u_left, at.h_right, at.u_right, self.B, self.face_status)
-        P1, P2, N1, N2 = (sums[:-1] for sums in self._sums)
+        P1, P2, N1, N2 = self._sums[:, :-1]
         half_sums(self.B, self._w1, self._w2, P1, P2, N1, N2)
         np.add(P1, N1, out=now.B1)
         np.add(P2, N2, out=now.B2)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..balance.interface import Faces
 from ..balance.stages import Array, Stages, fastest
 from ..scene import Scene
-from .half_moments import flux_closed
+from .half_moments import flux_closed, half_moments_closed
 
 
 class ClosedForm:
@@ -17,6 +19,11 @@ class ClosedForm:
     def equilibrium(self, now: Stages) -> float:
         """M of (12) is known without being formed; its fastest particle is |u| + c."""
         return fastest(now.h, now.u, self._beta, False)
+
+    def half_moments(self, now: Stages) -> Array:
+        """I1, I3 and I2, I4 of each ghosted cell, shape (4, nx + 2)."""
+        pairs = zip(now.h, now.u, strict=True)
+        return np.array([half_moments_closed(h, u, self._beta) for h, u in pairs]).T
 
     def upwind_flux(self, now: Stages) -> None:
         """F of (24)."""

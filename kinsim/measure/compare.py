@@ -14,6 +14,7 @@ from ..method import Kinetic, Macroscopic
 from ..run import Run
 from ..scene import Scene
 from ..simulate import Progress, simulate
+from .seams import seams as stage_by_stage
 
 if TYPE_CHECKING:
     import xarray
@@ -26,6 +27,7 @@ def compare(
     save_every: int = 100,
     *,
     force: bool = False,
+    seams: bool = False,
     progress: Progress | None = None,
 ) -> xarray.Dataset:
     """Run `methods` and measure how far each is from the first.
@@ -39,6 +41,8 @@ def compare(
         clock: When.
         save_every: Every so many steps the states are compared, and at the start and at the end.
         force: Run although the CFL bound (28) is broken.
+        seams: Also take one step from each saved state of the first method with every method, and subtract stage by
+            stage: variables `seam_...` with the dim `twin` (see `kinsim.measure.seams`).
         progress: Called now and then with the share that is done.
 
     Returns:
@@ -54,7 +58,16 @@ def compare(
     for number, method in enumerate(methods):
         part = _part(progress, number, len(methods)) if progress else None
         runs.append(simulate(scene, method, _after(runs, clock), save_every, force=force, progress=part))
-    return _differences(runs)
+    apart = _differences(runs)
+    return apart.merge(_seams(runs, save_every)) if seams else apart
+
+
+def _seams(runs: list[Run], save_every: int) -> xarray.Dataset:
+    import xarray
+
+    against = [stage_by_stage(runs[0], save_every, run.method) for run in runs[1:]]
+    joined = xarray.concat(against, dim="twin", join="outer").assign_coords(twin=_labels(runs)[1:])
+    return joined.rename({name: f"seam_{name}" for name in joined.data_vars}).rename(t="t_seam")
 
 
 def _part(progress: Progress, number: int, of: int) -> Progress:

@@ -15,7 +15,7 @@ from .status import Status
 
 @dataclass(frozen=True)
 class Sampled:
-    """M at the nodes; keeps mass only to n^-1.5."""
+    """M of (12) at the nodes; keeps mass only to n^-1.5."""
 
     least = 2
 
@@ -31,7 +31,7 @@ class Sampled:
 
 @dataclass(frozen=True)
 class CellAverage:
-    """The exact average of M over each velocity cell; keeps mass to rounding, all else to n^-2.
+    """The exact average of M, (12), over each velocity cell; keeps mass to rounding, all else to n^-2.
 
     A sum of xi_j^2 over cell averages carries a spurious h dxi^2/12, which the weight xi_j^2 - dxi^2/12 removes.
     """

@@ -23,10 +23,11 @@ CLOSE = 1e-8
 
 @dataclass(frozen=True)
 class Entropic:
-    """The density of least entropy, sum of H(f, xi) = xi^2 f/2 + (pi^2 beta^2/6) f^3, with given mass and momentum.
+    """The density of least discrete kinetic entropy with the given mass and momentum.
 
-    It is f_j = sqrt(max(2 (A + B xi_j) - xi_j^2, 0)) / (pi beta), the semicircle with two shifted parameters, found by
-    a damped Newton iteration on the convex dual. Where the support is thinner than the grid two nodes carry it exactly.
+    The entropy is the sum of H(f, xi) = xi^2 f/2 + (pi^2 beta^2/6) f^3. The minimiser is
+    f_j = sqrt(max(2 (A + B xi_j) - xi_j^2, 0)) / (pi beta), the semicircle with two shifted parameters, found by a
+    damped Newton iteration on the convex dual. Where the support is thinner than the grid two nodes carry it exactly.
     """
 
     least = 4

@@ -18,9 +18,10 @@ from .status import CONVERGED, Status
 
 @dataclass(frozen=True)
 class Matched:
-    """Cell averages times a parabola in (xi - u)/c, so that mass, momentum and energy (3) hold to rounding.
+    """Cell averages times a parabola, so that all three moments (3) hold to rounding.
 
-    This is what keeps a pile at rest on the grid. Where the parabola would make an entry negative, few nodes take over.
+    The parabola is one in (xi - u)/c. This is what keeps a pile at rest on the grid. Where it would make an entry
+    negative, few nodes take over.
     """
 
     least = 4

@@ -1,0 +1,57 @@
+"""Every family and its variants, each with the first line of its own description."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any, NamedTuple, get_args
+
+from .balance.schemes import Scheme1, Scheme2, Scheme3Cell, Scheme3Face
+from .clock import Courant, Fixed
+from .kinetic.equilibrium import EQUILIBRIA
+from .kinetic.force import FORCES
+from .kinetic.project import PROJECTIONS
+from .kinetic.velocity import Velocity
+from .method import Kinetic, Macroscopic
+from .model.boundary import EXPLAINED
+from .model.chute import ConstantSlope
+from .model.friction import Friction
+from .model.heap import Heap
+
+
+class Room(NamedTuple):
+    """A variant: the key in a scene file, the word that chooses it, and what it is."""
+
+    key: str
+    name: str
+    line: str
+
+
+def rooms() -> list[Room]:
+    """All variants, family by family."""
+    schemes = {"1": Scheme1, "2": Scheme2, "3, coupling cell": Scheme3Cell, "3, coupling face": Scheme3Face}
+    return [
+        *_by_kind("chute.kind", ConstantSlope),
+        *_by_kind("friction.kind", *_variants(Friction)),
+        *_by_kind("heap.kind", *_variants(Heap)),
+        *(Room("boundary", name, line) for name, line in EXPLAINED.items()),
+        *_by_kind("clock", Fixed, Courant),
+        *_by_kind("method.kind", Kinetic, Macroscopic),
+        *(Room("method.scheme", name, _first_line(kind)) for name, kind in schemes.items()),
+        *_by_kind("method.velocity.kind", *_variants(Velocity)),
+        *(Room("method.equilibrium", name, _first_line(type(room))) for name, room in EQUILIBRIA.items()),
+        *(Room("method.force", name, _first_line(type(room))) for name, room in FORCES.items()),
+        *(Room("method.projection", name, _first_line(type(room))) for name, room in PROJECTIONS.items()),
+    ]
+
+
+def _variants(family: Any) -> tuple[Any, ...]:
+    """The members of an annotated union."""
+    return get_args(get_args(family)[0])
+
+
+def _by_kind(key: str, *kinds: Any) -> list[Room]:
+    return [Room(key, kind.__dataclass_fields__["kind"].default.default, _first_line(kind)) for kind in kinds]
+
+
+def _first_line(thing: type) -> str:
+    return (inspect.getdoc(thing) or "").split("\n")[0]
