@@ -3,9 +3,14 @@
 Names load when they are first used (see ``__init__.pyi`` for the list).
 """
 
-from importlib.metadata import version as _version
-
 import lazy_loader as _lazy
 
-__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)
-__version__ = _version("kinsim")
+_load, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)
+
+
+def __getattr__(name: str) -> object:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("kinsim")
+    return _load(name)

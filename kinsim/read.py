@@ -31,7 +31,12 @@ def _clock_by_keys(given: Any) -> Any:
 
 
 def _kinetic_unless_named(given: Any) -> Any:
-    return {"kind": "kinetic", **given} if isinstance(given, dict) else given
+    """A method is kinetic, and its velocities a uniform grid, where the file does not say."""
+    if not isinstance(given, dict):
+        return given
+    velocity = given.get("velocity")
+    named = {"velocity": {"kind": "uniform", **velocity}} if isinstance(velocity, dict) else {}
+    return {"kind": "kinetic", **given, **named}
 
 
 @value

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -32,8 +34,9 @@ def check_destination(path: str | Path) -> Path:
     return path
 
 
-def write_netcdf(dataset: xarray.Dataset, path: str | Path) -> Path:
-    """Write `dataset` to `path`, all of it or nothing.
+@contextmanager
+def replacing(path: str | Path) -> Iterator[str]:
+    """The name of a file to write in place of `path`; it takes that name at the end, and vanishes after an error.
 
     Raises:
         InputError: The file cannot be put there.
@@ -42,14 +45,24 @@ def write_netcdf(dataset: xarray.Dataset, path: str | Path) -> Path:
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
     os.close(handle)
     try:
-        dataset.to_netcdf(name, engine="h5netcdf", invalid_netcdf=False)
+        yield name
         os.chmod(name, 0o666 & ~_umask())
         os.replace(name, path)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error}); nothing was kept there") from None
     finally:
         Path(name).unlink(missing_ok=True)
-    return path
+
+
+def write_netcdf(dataset: xarray.Dataset, path: str | Path) -> Path:
+    """Write `dataset` to `path`, all of it or nothing.
+
+    Raises:
+        InputError: The file cannot be put there.
+    """
+    with replacing(path) as name:
+        dataset.to_netcdf(name, engine="h5netcdf", invalid_netcdf=False)
+    return Path(path)
 
 
 def _umask() -> int:

@@ -47,7 +47,7 @@ def compare(
 
     Returns:
         h_l1, q_l1 (integrals over x) and h_max, q_max of the differences, dims (method, t); wall_time in seconds,
-        steps and verdict, dims (method,).
+        steps, verdict and verdict_kind, dims (method,).
 
     Raises:
         InputError: There is no method, or a first step would break the CFL bound.
@@ -101,6 +101,11 @@ def _differences(runs: list[Run]) -> xarray.Dataset:
             "wall_time": ("method", [run.wall_time for run in runs], {"long_name": "wall time", "units": "s"}),
             "steps": ("method", [run.steps for run in runs], {"long_name": "steps taken", "units": "1"}),
             "verdict": ("method", [str(run.verdict) for run in runs], {"long_name": "how the run ended"}),
+            "verdict_kind": (
+                "method",
+                [run.verdict.kind for run in runs],
+                {"long_name": "how it ended, in a word"},
+            ),
         },
         coords={
             "method": ("method", _labels(runs), {"long_name": "method; the first is the reference"}),

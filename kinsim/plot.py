@@ -1,0 +1,119 @@
+"""A run as a picture. The only file that needs matplotlib."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .balance.stages import Array
+from .errors import InputError
+from .run import Run
+from .store import check_destination, replacing
+from .watch.dump import LONG_NAMES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FORMATS = ("png", "pdf", "svg")
+"""What a picture may be, by its suffix."""
+
+CURVES = 6
+"""States shown, the first and the last included."""
+
+
+def plot_run(run: Run, path: str | Path) -> Path:
+    """Draw `run` into a PNG, PDF or SVG file, all of it or nothing.
+
+    Raises:
+        InputError: The suffix is none of these, or the file cannot be put there.
+    """
+    path = check_picture(path)
+    with replacing(path) as name:
+        draw(run).savefig(name, format=path.suffix[1:].lower(), dpi=150)
+    return path
+
+
+def check_picture(path: str | Path) -> Path:
+    """`path`, if a picture can be put there.
+
+    Raises:
+        InputError: Its suffix names no kind of picture, or no file can be put there.
+    """
+    path = Path(path)
+    if path.suffix[1:].lower() not in FORMATS:
+        raise InputError(f"{path}: no picture ends in {path.suffix or 'nothing'!r}; end it in .{', .'.join(FORMATS)}")
+    return check_destination(path)
+
+
+def draw(run: Run) -> Figure:
+    """h and u at several times, and the density over (x, xi) at the end."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(9, 10), layout="constrained")
+    heights, velocities, phase = figure.subplots(3, 1, sharex=True, height_ratios=(1, 1, 1.3))
+    figure.suptitle(f"{run.scene.title or 'untitled'}: {run.method.kind}, scheme {run.method.scheme}")
+    _curves(run, heights, velocities)
+    image, what = _phase(run, phase)
+    figure.colorbar(image, ax=phase, label=what, pad=0.01)
+    phase.set_xlabel("x (all quantities dimensionless)")
+    phase.set_xlim(run.scene.cells.left, run.scene.cells.right)
+    return figure
+
+
+def _curves(run: Run, heights: Any, velocities: Any) -> None:
+    from matplotlib import colormaps
+
+    rows = telling_rows(run.h, CURVES)
+    colours = colormaps["viridis_r"](np.linspace(0.1, 1.0, len(rows)))
+    for row, colour in zip(rows, colours, strict=True):
+        heights.plot(run.x, run.h[row], color=colour, label=f"t = {run.t[row]:.3g}")
+        velocities.plot(run.x, run.u[row], color=colour)
+    heights.set_ylabel("height h")
+    heights.set_ylim(min(0.0, 1.05 * run.h.min()), 1.05 * run.h.max() or 1.0)
+    velocities.set_ylabel("velocity u = q/h")
+    for axes in (heights, velocities):
+        axes.grid(alpha=0.3)
+    heights.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(rows), frameon=False, columnspacing=1.2)
+
+
+def telling_rows(h: Array, count: int) -> list[int]:
+    """`count` rows of h, shape (nt, nx), or fewer, first and last included, with about the same change in between."""
+    change = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(h, axis=0)).sum(axis=1))])
+    wanted = np.linspace(0.0, change[-1], count)
+    between = np.searchsorted(change, wanted[1:-1])
+    return sorted({0, *map(int, between), len(h) - 1})
+
+
+def _phase(run: Run, axes: Any) -> tuple[Any, str]:
+    h, u = np.maximum(run.h[-1], 0.0), run.u[-1]
+    c = np.sqrt(2.0 * run.scene.beta * h)
+    low, high = min(0.0, float((u - c).min())), max(0.0, float((u + c).max()))
+    span = (high - low) or 1.0
+    low, high = low - 0.06 * span, high + 0.2 * span
+    xi, f, what = _density(run, h, u, low, high)
+    image = axes.pcolormesh(run.x, xi, f.T, cmap="viridis", shading="nearest", rasterized=True, vmin=0.0)
+    axes.plot(run.x, u + c, color="white", linewidth=1.2, label="support edges u ± c")
+    axes.plot(run.x, u - c, color="white", linewidth=1.2)
+    axes.plot(run.x, u, color="white", linewidth=1.2, linestyle=":", label="mean velocity u")
+    axes.set_facecolor(image.cmap(0.0))
+    axes.set_ylim(low, high)
+    axes.set_ylabel(r"particle velocity $\xi$")
+    axes.legend(loc="upper right", ncols=2, facecolor=image.cmap(0.0), edgecolor="none", labelcolor="white")
+    return image, what
+
+
+def _density(run: Run, h: Array, u: Array, low: float, high: float) -> tuple[Array, Array, str]:
+    """Nodes, the density at the end of the run on them, shape (nx, n), and what it is."""
+    end = f"at t = {run.t[-1]:.3g}"
+    for dump in run.dumps.values():
+        if (
+            dump.attrs["long_name"] == LONG_NAMES["force"]
+            and dump.shape[1] == run.x.size
+            and dump["t"][-1] == run.t[-1]
+        ):
+            return dump["xi"].to_numpy(), dump[-1].to_numpy(), rf"$f(x, \xi)$ after the force, {end}"
+    xi, beta = np.linspace(low, high, 401), run.scene.beta
+    square = 2.0 * beta * h[:, None] - (xi - u[:, None]) ** 2
+    return xi, np.sqrt(np.maximum(square, 0.0)) / (np.pi * beta), rf"equilibrium $M(h, \xi - u)$, {end}"

@@ -1,0 +1,70 @@
+"""The progress bar of a run."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterable
+from contextlib import ExitStack
+from typing import Any
+
+from numba.core import event
+from rich.console import Console, RenderableType
+from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+PATIENCE = 1.0
+"""Seconds before a bar shows."""
+
+
+class Watched:
+    """While it is open, a bar with the time left on the error stream; call it with the share that is done."""
+
+    def __init__(self, quiet: bool = False) -> None:
+        columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TaskProgressColumn())
+        console = Console(stderr=True)
+        off = quiet or not console.is_terminal
+        self._bar = _Late(*columns, TimeRemainingColumn(), console=console, transient=True, disable=off)
+        self._task = self._bar.add_task("preparing", total=1.0)
+        self._open = ExitStack()
+
+    def __enter__(self) -> Watched:
+        self._open.enter_context(event.install_listener("numba:compile", _Compiling(self.say)))
+        self._bar.wait()
+        self._open.enter_context(self._bar)
+        return self
+
+    def __exit__(self, *details: object) -> None:
+        self._open.close()
+
+    def __call__(self, share: float) -> None:
+        self._bar.update(self._task, completed=share, description="running")
+
+    def say(self, what: str) -> None:
+        """Show what is being done."""
+        self._bar.update(self._task, description=what)
+
+
+class _Late(Progress):
+    """A bar that shows only when something takes a while."""
+
+    begin = math.inf
+
+    def wait(self) -> None:
+        self.begin = time.monotonic() + PATIENCE
+
+    def get_renderables(self) -> Iterable[RenderableType]:
+        if time.monotonic() >= self.begin:
+            yield from super().get_renderables()
+
+
+class _Compiling(event.Listener):
+    """Says so when numba compiles."""
+
+    def __init__(self, say: Any) -> None:
+        self._say = say
+
+    def on_start(self, event: object) -> None:
+        self._say("compiling kernels, only this once")
+
+    def on_end(self, event: object) -> None:
+        self._say("preparing")
