@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -62,7 +63,7 @@ def simulate(
     if save_every < 1:
         raise InputError(f"save_every = {save_every} is below 1; take 1 to keep every step")
     if isinstance(method, Kinetic) and method.unbounded:
-        method = method.within(find_bound(scene, method, clock))
+        method = method.within(find_bound(scene, method, clock, force))
     loop = _Loop(scene, method, clock, save_every, force)
     loop.watch(dumps, causes)
     began = time.perf_counter()
@@ -73,10 +74,14 @@ def simulate(
     return loop.finish(verdict, time.perf_counter() - began)
 
 
-def find_bound(scene: Scene, method: Kinetic, clock: AnyClock) -> float:
-    """1.05 times the largest |u| + c + dt |g| of a run of the closed-form twin, face states included."""
-    twin = _Loop(scene, method.twin, clock, save_every=2**62, force=True)
-    twin.run(None)
+def find_bound(scene: Scene, method: Kinetic, clock: AnyClock, force: bool = False) -> float:
+    """1.05 times the largest |u| + c + dt |g| of a run of the closed-form twin, face states included.
+
+    Where the twin breaks the CFL bound it ends, unless forced: so does then the run itself, on its own grid.
+    """
+    twin = _Loop(scene, method.twin, clock, save_every=2**62, force=force)
+    with contextlib.suppress(InputError):
+        twin.run(None)
     largest = twin.reached + max(twin.dts, default=0.0) * (abs(scene.chute.sin) + scene.resistance)
     return 1.05 * largest if 0.0 < largest < math.inf else 1.0
 
@@ -124,15 +129,16 @@ class _Loop:
         while True:
             speed = stepper.begin(self.h, self.q)
             reach = stepper.reach()
-            self.reached = max(self.reached, reach)
             dt = clock.next_dt(self.step, self.t, speed, dx)
             if dt is None:
+                self.reached = max(self.reached, reach)
                 return self._end()
             courant = speed * dt / dx
             if courant > 1.0 + ROUNDING and not self.force:
                 if self.step == 0:
                     raise InputError(_over_the_bound(courant, dt, dx / speed, clock))
                 return self.verdict("cfl-broken", f"{_over_the_bound(courant, dt, dx / speed, clock)}; stopped before")
+            self.reached = max(self.reached, reach)
             cut = self._cut(stepper.density, reach)
             if cut is None:
                 return self.verdict("window-too-small", f"{self.outside}; stopped before")
@@ -172,9 +178,6 @@ class _Loop:
         if self.times[-1] != self.t:
             self.ledger.save(self.h, self.q)
             self._save()
-        if self.step and verdict.kind in ("finished", "at-rest"):
-            for recorder in self.recorders:
-                recorder.record(self.step, self.t - self.dts[-1], self.t, final=True)
         return Run(
             scene=self.scene, method=self.method, clock=self.clock, t=np.array(self.times),
             h=np.array([h for h, _ in self.states]), q=np.array([q for _, q in self.states]),
@@ -196,8 +199,9 @@ class _Loop:
         return None if stops else density.cut(self.stepper.now)
 
     def _accept(self, h1: Array, q1: Array, dt: float, after: float) -> None:
+        last = self.clock.next_dt(self.step + 1, after, 0.0, self.scene.cells.dx) is None
         for recorder in self.recorders:
-            recorder.record(self.step + 1, self.t, after)
+            recorder.record(self.step + 1, self.t, after, last)
         if self.causes:
             self.causes.note(h1, q1, dt)
         self.h[:], self.q[:] = h1, q1
@@ -214,6 +218,7 @@ class _Loop:
         self.stepper.begin(self.h, self.q)
         self.stepper.advance(1e-3 * self.scene.cells.dx)
         survey(self.h, self.q, self.scene.beta)
+        self.reached = self.stepper.reach()
 
     def _save(self) -> None:
         self.times.append(self.t)
