@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import math
+import warnings
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
@@ -79,8 +80,10 @@ def evaluate(formula: str, x: ArrayLike | None = None) -> Any:
 @lru_cache(maxsize=64)
 def _parsed(formula: str) -> ast.AST:
     try:
-        return SimpleEval.parse(formula.strip())  # type: ignore[no-any-return]
-    except (InvalidExpression, SyntaxError, ValueError, RecursionError, MemoryError):
+        with warnings.catch_warnings():  # "1if 2 else 3" and the like: read, or not
+            warnings.simplefilter("ignore")
+            return ast.parse(formula.strip(), mode="eval").body  # one expression, and no second one after it
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise InputError(f"cannot read the formula {_short(formula)}") from None
 
 
@@ -90,6 +93,8 @@ def _at(formula: str, names: dict[str, float]) -> float:
     try:
         result = _Arithmetic(names).eval(formula, previously_parsed=tree)
         number = float(result)
+    except KeyError as error:  # a comparison that is not arithmetic
+        raise InputError(f"{_short(formula)}: operator {getattr(error.args[0], '__name__', '')} is not known") from None
     except (InvalidExpression, RecursionError) as error:
         known = ", ".join(sorted([*names, *FUNCTIONS]))
         raise InputError(f"{_short(formula)}: {str(error) or type(error).__name__}; known names: {known}") from None
