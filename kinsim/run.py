@@ -172,4 +172,4 @@ def _attrs(long_name: str) -> dict[str, str]:
 
 def _own_axes(name: str, array: xarray.DataArray) -> xarray.DataArray:
     """The dump with its axes named after it, so that several fit into one dataset."""
-    return array.rename({axis: f"{axis}_{name}" for axis in array.dims})
+    return array.rename({axis: f"{axis}_{name}" for axis in array.coords})

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from kinsim import Cells, ConstantSlope, Coulomb, Frictionless, Profile, Scene
@@ -42,3 +44,8 @@ def ghosted(scene: Scene, array: np.ndarray, odd: bool = False) -> np.ndarray:
     for kind, inner, across in ((kinds[0], array[0], array[-1]), (kinds[1], array[-1], array[0])):
         values.append({"open": inner, "wall": -inner if odd else inner, "periodic": across}[kind])
     return np.array([values[0], *array, values[1]])
+
+
+def incline(h: np.ndarray, u: np.ndarray, zeta: float) -> Scene:
+    """Periodic cells with h and u on an incline with friction."""
+    return replace(scene_with(h, u), chute=ConstantSlope(zeta), friction=Coulomb(0.3), boundary="periodic")

@@ -45,6 +45,8 @@ class Density:
         self._sums = np.zeros((4, nx + 2))
         self.reach = 0.0
         self.lost = 0.0
+        self._pull = scene.cells.dx * (abs(scene.chute.sin) + scene.resistance)  # dt |g| = lam * this, at most
+        self._room = 0.0
         self._allocate(velocity.grid(0.0))
 
     def _allocate(self, grid: Grid) -> None:
@@ -57,11 +59,17 @@ class Density:
         self.transported = np.zeros((nx, n))
         self.f = np.zeros((nx, n)) if self._forced else self.transported
 
+    def _widen(self, grid: Grid) -> None:
+        M, B, pad = self.M, self.B, (grid.count - self.grid.count) // 2
+        if pad > 0:
+            self._allocate(grid)
+            self.M[:, pad:-pad], self.B[:, pad:-pad] = M, B
+
     def equilibrium(self, now: Stages) -> float:
         """M_i = M(h_i, xi - u_i), (12); returns its outermost occupied node."""
         self.reach = fastest(now.h, now.u, self._beta, self._uses_balanced)
-        if not self._velocity.fits(self.grid, self.reach):
-            self._allocate(self._velocity.grid(self.reach))
+        if not self._velocity.fits(self.grid, self.reach + self._room):
+            self._allocate(self._velocity.grid(self.reach + self._room))
         self.fill(now.h, now.u, now.h, now.u, self.M, self.status)
         return outermost(self.M, self.grid.dxi)
 
@@ -87,7 +95,10 @@ class Density:
         np.add(P2, N2, out=now.B2)
 
     def transport(self, now: Stages, lam: float) -> None:
-        """f = M - lam xi (M_{i+1/2} - M_{i-1/2}), (23) before the shift."""
+        """f = M - lam xi (M_{i+1/2} - M_{i-1/2}), (23) before the shift; a window makes room for the shift."""
+        self._room = lam * self._pull + self.grid.dxi
+        if not self._velocity.fits(self.grid, self.reach + self._room):
+            self._widen(self._velocity.grid(self.reach + self._room))
         transport(self.M, self.B, now.at_left, now.at_right, self.xi, lam, self.transported)
 
     def pulled(self, now: Stages) -> Array:

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from ..balance.stages import Array
+from ..kinetic.velocity import Grid
 from ..value import Number, Whole, value
 
 if TYPE_CHECKING:
@@ -48,12 +49,12 @@ class Recorder:
 
     def __init__(self, dump: Dump, scene: Scene, density: Density) -> None:
         self.dump = dump
-        self._cells = _inside(scene.x, dump.x)
-        self._nodes = _inside(density.grid.xi, dump.xi)
-        self._x, self._xi = scene.x[self._cells], density.grid.xi[self._nodes]
         self._density = density
+        self._cells = _inside(scene.x, dump.x)
+        self._x = scene.x[self._cells]
         self._times: list[float] = []
         self._rows: list[Array] = []
+        self._offsets: list[Array] = []
         self._last = -1
 
     def record(self, step: int, before: float, after: float, final: bool = False) -> None:
@@ -61,30 +62,33 @@ class Recorder:
         if step == self._last or not (final or step == 1 or step % self.dump.every == 0):
             return
         self._last = step
-        stage = self.dump.stage
+        stage, density = self.dump.stage, self._density
         self._times.append(before if stage == "equilibrium" else after)
-        whole = {
-            "equilibrium": self._density.M[1:-1],
-            "transport": self._density.transported,
-            "force": self._density.f,
-        }[stage]
-        self._rows.append(whole[self._cells, self._nodes].copy())
+        whole = {"equilibrium": density.M[1:-1], "transport": density.transported, "force": density.f}[stage]
+        self._rows.append(whole[self._cells].copy())
+        self._offsets.append(density.offset[self._cells] if stage == "force" else np.zeros(self._x.size))
 
     def result(self) -> xarray.DataArray:
-        """What was kept, with axes (t, x, xi)."""
+        """What was kept, with axes (t, x, xi); where the force moved the nodes, `offset` (t, x) says by how much."""
         import xarray
 
-        rows = np.array(self._rows).reshape(-1, self._x.size, self._xi.size)
-        return xarray.DataArray(
-            rows,
-            dims=("t", "x", "xi"),
-            coords={
-                "t": ("t", np.array(self._times), {"long_name": "time", "units": "1"}),
-                "x": ("x", self._x, {"long_name": "cell centre along the chute", "units": "1"}),
-                "xi": ("xi", self._xi, {"long_name": "particle velocity", "units": "1"}),
-            },
-            attrs={"long_name": LONG_NAMES[self.dump.stage], "units": "1"},
-        )
+        grid = Grid(max((rows.shape[1] for rows in self._rows), default=2), self._density.grid.dxi)
+        whole = np.zeros((len(self._rows), self._x.size, grid.count))
+        for rows, kept in zip(self._rows, whole, strict=True):  # a window that follows is smaller at times
+            outside = (grid.count - rows.shape[1]) // 2
+            kept[:, outside : grid.count - outside] = rows
+        nodes = _inside(grid.xi, self.dump.xi)
+        coords = {
+            "t": ("t", np.array(self._times), {"long_name": "time", "units": "1"}),
+            "x": ("x", self._x, {"long_name": "cell centre along the chute", "units": "1"}),
+            "xi": ("xi", grid.xi[nodes], {"long_name": "particle velocity", "units": "1"}),
+        }
+        attrs = {"long_name": LONG_NAMES[self.dump.stage], "units": "1"}
+        array = xarray.DataArray(whole[:, :, nodes], dims=("t", "x", "xi"), coords=coords, attrs=attrs)
+        offset = np.array(self._offsets).reshape(-1, self._x.size)
+        if offset.any():
+            array = array.assign_coords(offset=(("t", "x"), offset, {"long_name": "shift of the nodes", "units": "1"}))
+        return array
 
 
 def _inside(places: Array, window: tuple[float, float] | None) -> slice:
