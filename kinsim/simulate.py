@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -80,8 +79,14 @@ def find_bound(scene: Scene, method: Kinetic, clock: AnyClock, force: bool = Fal
     Where the twin breaks the CFL bound it ends, unless forced: so does then the run itself, on its own grid.
     """
     twin = _Loop(scene, method.twin, clock, save_every=2**62, force=force)
-    with contextlib.suppress(InputError):
-        twin.run(None)
+    try:
+        verdict = twin.run(None)
+    except InputError:  # a first step over the bound; the grid counts its nodes, and judges by itself
+        verdict = None
+    if verdict is not None and verdict.kind == "non-finite":
+        raise InputError(
+            f"velocity: no bound can be found, the closed-form twin blows up at step {verdict.step + 1}; give one"
+        )
     largest = twin.reached + max(twin.dts, default=0.0) * (abs(scene.chute.sin) + scene.resistance)
     return 1.05 * largest if 0.0 < largest < math.inf else 1.0
 
