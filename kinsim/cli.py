@@ -84,8 +84,8 @@ def _options(
 @_told()
 def scenes() -> None:
     """List the built-in scenes and their figures in the paper."""
+    from .overview import scene_list
     from .read import built_in, read_keys
-    from .report import scene_list
 
     scene_list({name: read_keys(path) for name, path in built_in().items()})
 
@@ -105,9 +105,10 @@ def run(
 
     Exit code: 0 if it went to its end, 1 if it was stopped, 2 if the input is bad, 130 if it was interrupted.
     """
+    from .overview import saved_every
     from .plot import check_picture, plot_run
     from .progress import Watched
-    from .report import run_report, saved_every
+    from .report import run_report
     from .simulate import simulate
     from .store import check_destination
 
@@ -143,8 +144,9 @@ def run(
 def compare(name: SceneName, settings: Settings = None, force: Force = False) -> None:
     """Measure the closed-form twin against the kinetic run."""
     from .measure.compare import compare
+    from .overview import saved_every
     from .progress import Watched
-    from .report import comparison, saved_every
+    from .report import comparison
 
     file = _read(name, settings, MethodKind.KINETIC)
     methods = [file.method, file.method.twin]  # type: ignore[union-attr]
@@ -158,8 +160,8 @@ def compare(name: SceneName, settings: Settings = None, force: Force = False) ->
 @_told()
 def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file, or a built-in scene.")]) -> None:
     """Validate a scene file, and print it with all that was filled in."""
+    from .overview import filled_in, first_courant
     from .read import check, read_keys
-    from .report import filled_in, first_courant
 
     keys = read_keys(name)
     file = check(keys, name)

@@ -43,7 +43,7 @@ def check_picture(path: str | Path) -> Path:
     """
     path = Path(path)
     if path.suffix[1:].lower() not in FORMATS:
-        raise InputError(f"{path}: no picture ends in {path.suffix or 'nothing'!r}; end it in .{', .'.join(FORMATS)}")
+        raise InputError(f"{path}: is no picture; end its name in .{', .'.join(FORMATS)}")
     return check_destination(path)
 
 

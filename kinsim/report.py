@@ -1,58 +1,24 @@
-"""What the commands print: tables."""
+"""What a run and a comparison print."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from pydantic import TypeAdapter
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from .clock import Fixed
 from .kinetic.velocity import Fitted, Uniform
 from .measure.compare import method_name
 from .method import Kinetic, Macroscopic
-from .read import SceneFile
+from .overview import plain_table
 from .run import Run
 
 if TYPE_CHECKING:
     import xarray
-
-ROWS = 100
-"""States that a command keeps, about."""
-
-
-def scene_list(scenes: Mapping[str, Mapping[str, Any]]) -> None:
-    """The built-in scenes, by the keys of their files."""
-    table = _table("scene", "figure", "what happens")
-    for name, keys in scenes.items():
-        table.add_row(name, keys["figure"], keys["title"])
-    Console().print(table)
-
-
-def first_speed(file: SceneFile) -> float:
-    """The fastest particle at the start, max(|u| + c)."""
-    h, q = file.scene.initial()
-    u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
-    return float(np.max(np.abs(u) + np.sqrt(2.0 * file.scene.beta * h)))
-
-
-def first_courant(file: SceneFile) -> float:
-    """The Courant number of the first step, in closed form."""
-    clock = file.clock
-    return first_speed(file) * clock.dt / file.cells.dx if isinstance(clock, Fixed) else clock.number
-
-
-def saved_every(file: SceneFile) -> int:
-    """So many steps from one saved state to the next make about `ROWS` of them."""
-    clock = file.clock
-    steps = clock.steps if isinstance(clock, Fixed) else clock.end * first_speed(file) / (clock.number * file.cells.dx)
-    return max(1, int(steps / ROWS))
 
 
 def run_report(run: Run, asked: Kinetic | Macroscopic, files: Mapping[str, Path | None], name: str) -> None:
@@ -65,11 +31,9 @@ def run_report(run: Run, asked: Kinetic | Macroscopic, files: Mapping[str, Path 
     console.print(table)
     suffixes = {"--out": ".nc", "--plot": ".png"}
     for option, path in files.items():
-        what = "run" if option == "--out" else "picture"
-        remedy = f"not written; {option} {escape(name)}{suffixes[option]} would put it there"
-        console.print(
-            f"{what}: {f'written to {escape(str(path))}' if path else remedy}", highlight=False, soft_wrap=True
-        )
+        remedy = f"not written; {option} {name}{suffixes[option]} would put it there"
+        where = f"written to {path}" if path else remedy
+        console.print(f"{'run' if option == '--out' else 'picture'}: {escape(where)}", highlight=False, soft_wrap=True)
 
 
 def _figures(run: Run, asked: Kinetic | Macroscopic) -> list[tuple[str, str]]:
@@ -138,49 +102,13 @@ def comparison(measured: xarray.Dataset) -> None:
     columns = ("h_l1", "h_max", "q_l1", "q_max")
     rows = sorted(set(np.linspace(0, measured.sizes["t"] - 1, 11).astype(int).tolist()))
     for number, name in enumerate(names[1:], start=1):
-        table = _table(*("t", "L1(h)", "max |h|", "L1(q)", "max |q|"), title=f"difference of {name}", right=True)
+        table = plain_table(*("t", "L1(h)", "max |h|", "L1(q)", "max |q|"), title=f"difference of {name}", right=True)
         for row in rows:
             at = measured.isel(method=number, t=row)
             table.add_row(f"{float(at['t']):.4g}", *(f"{float(at[key]):.3e}" for key in columns))
         console.print(table)
-    table = _table("method", "wall time", "verdict")
+    table = plain_table("method", "wall time", "verdict")
     for number, name in enumerate(names):
         at = measured.isel(method=number)
         table.add_row(name, f"{float(at['wall_time']):.3g} s", str(at["verdict"].item()))
     console.print(table)
-
-
-def filled_in(file: SceneFile, keys: Mapping[str, Any]) -> None:
-    """Every key of a scene file with its value, whether the file gave it, and what follows from them."""
-    table = _table("key", "value", "from")
-    given = _flat(keys)
-    for key, value in _flat(TypeAdapter(SceneFile).dump_python(file, mode="json")).items():
-        source = "file" if key in given else "filled in"
-        table.add_row(escape(key), escape(_short(value)), source if source == "file" else f"[yellow]{source}[/]")
-    for key, value in (
-        ("dx", file.cells.dx),
-        ("beta", file.beta),
-        ("R", file.resistance),
-        ("Courant number of the first step", first_courant(file)),
-    ):
-        table.add_row(key, f"{value:.6g}", "[cyan]follows[/]")
-    Console().print(table)
-
-
-def _flat(keys: Mapping[str, Any], before: str = "") -> dict[str, Any]:
-    flat: dict[str, Any] = {}
-    for key, value in sorted(keys.items(), key=lambda item: item[0] != "kind"):
-        flat |= _flat(value, f"{before}{key}.") if isinstance(value, Mapping) else {f"{before}{key}": value}
-    return flat
-
-
-def _short(value: Any) -> str:
-    text = json.dumps(value, ensure_ascii=False)
-    return text if len(text) <= 60 else f"{text[:57]}..."
-
-
-def _table(*columns: str, title: str | None = None, right: bool = False) -> Table:
-    table = Table(title=title, title_justify="left", box=None, header_style="bold", padding=(0, 2, 0, 0))
-    for column in columns:
-        table.add_column(column, justify="right" if right else "left")
-    return table

@@ -1,0 +1,84 @@
+"""What is known before a run: the built-in scenes, a scene file with all that was filled in, its first step."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from pydantic import TypeAdapter
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from .clock import Fixed
+from .read import SceneFile
+
+ROWS = 100
+"""States that a command keeps, about."""
+
+
+def scene_list(scenes: Mapping[str, Mapping[str, Any]]) -> None:
+    """The built-in scenes, by the keys of their files."""
+    table = plain_table("scene", "figure", "what happens")
+    for name, keys in scenes.items():
+        table.add_row(name, keys["figure"], keys["title"])
+    Console().print(table)
+
+
+def first_speed(file: SceneFile) -> float:
+    """The fastest particle at the start, max(|u| + c)."""
+    h, q = file.scene.initial()
+    u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
+    return float(np.max(np.abs(u) + np.sqrt(2.0 * file.scene.beta * h)))
+
+
+def first_courant(file: SceneFile) -> float:
+    """The Courant number of the first step, in closed form."""
+    clock = file.clock
+    return first_speed(file) * clock.dt / file.cells.dx if isinstance(clock, Fixed) else clock.number
+
+
+def saved_every(file: SceneFile) -> int:
+    """So many steps from one saved state to the next make about `ROWS` of them."""
+    clock = file.clock
+    steps = clock.steps if isinstance(clock, Fixed) else clock.end * first_speed(file) / (clock.number * file.cells.dx)
+    return max(1, int(min(steps / ROWS, 1e9)))
+
+
+def filled_in(file: SceneFile, keys: Mapping[str, Any]) -> None:
+    """Every key of a scene file with its value, whether the file gave it, and what follows from them."""
+    table = plain_table("key", "value", "from")
+    given = _flat(keys)
+    for key, value in _flat(TypeAdapter(SceneFile).dump_python(file, mode="json")).items():
+        source = "file" if key in given else "filled in"
+        table.add_row(escape(key), escape(_short(value)), source if source == "file" else f"[yellow]{source}[/]")
+    for key, value in (
+        ("dx", file.cells.dx),
+        ("beta", file.beta),
+        ("R", file.resistance),
+        ("Courant number of the first step", first_courant(file)),
+    ):
+        table.add_row(key, f"{value:.6g}", "[cyan]follows[/]")
+    Console().print(table)
+
+
+def _flat(keys: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+    flat: dict[str, Any] = {}
+    for key, value in sorted(keys.items(), key=lambda item: item[0] != "kind"):
+        flat |= _flat(value, f"{before}{key}.") if isinstance(value, Mapping) else {f"{before}{key}": value}
+    return flat
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def plain_table(*columns: str, title: str | None = None, right: bool = False) -> Table:
+    """A table without lines."""
+    table = Table(title=title, title_justify="left", box=None, header_style="bold", padding=(0, 2, 0, 0))
+    for column in columns:
+        table.add_column(column, justify="right" if right else "left")
+    return table
