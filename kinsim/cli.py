@@ -181,11 +181,11 @@ def _read(name: str, settings: list[str] | None, method: MethodKind | None) -> S
 
 
 def _final_density(file: SceneFile) -> list[Dump]:
-    """The density after the force of the first and the last step, where there is one on a fixed grid."""
-    from .kinetic.velocity import Uniform
+    """The density after the force of the first and the last step, where there is one on a grid."""
+    from .kinetic.velocity import Fitted
     from .method import Kinetic
     from .watch.dump import Dump
 
-    if isinstance(file.method, Kinetic) and isinstance(file.method.velocity, Uniform):
+    if isinstance(file.method, Kinetic) and not isinstance(file.method.velocity, Fitted):
         return [Dump(every=2**62)]
     return []

@@ -111,7 +111,7 @@ def _density(run: Run, h: Array, u: Array, low: float, high: float) -> tuple[Arr
         if (
             dump.attrs["long_name"] == LONG_NAMES["force"]
             and dump.shape[1] == run.x.size
-            and dump["t"][-1] == run.t[-1]
+            and run.t[-1] in dump["t"].to_numpy()[-1:]
         ):
             return dump["xi"].to_numpy(), dump[-1].to_numpy(), rf"$f(x, \xi)$ after the force, {end}"
     xi, beta = np.linspace(low, high, 401), run.scene.beta

@@ -57,9 +57,14 @@ def test_the_density_fills_its_support(name):
     assert high > (run.u[-1] + c).max()
 
 
-def test_a_density_of_another_time_is_not_shown_as_the_last(run):
-    stopped = small_run(METHODS["kinetic"], dumps=[Dump(stage="transport")])
-    assert "equilibrium" in draw(stopped).axes[-1].get_ylabel()
+def test_a_density_of_another_stage_or_time_is_not_shown_as_the_last():
+    before_the_force = small_run(METHODS["kinetic"], dumps=[Dump(stage="transport")])
+    narrow = [Kinetic(velocity=Uniform(32, bound)) for bound in (1.0, 1.5)]
+    stopped = [small_run(method, dumps=[Dump()]) for method in narrow]
+    assert [run.dumps["f"].sizes["t"] for run in stopped] == [0, 1]
+    assert stopped[1].steps > 1
+    for run in (before_the_force, *stopped):
+        assert "equilibrium" in draw(run).axes[-1].get_ylabel()
 
 
 def test_the_chosen_rows_share_out_the_change():
