@@ -105,8 +105,10 @@ def test_two_copies_of_the_package_do_not_share_code(tmp_path: Path) -> None:
     helper.write_text(helper.read_text().replace("0.5 * total2, -m1", "0.25 * total2, -m1").replace(
         "total2 = h * u * u", "total2 = 2.0 * h * u * u"))  # fmt: skip
     code = SMALL.format(before="")
-    numbers = [python(code, tmp_path / "cache", path).split()[0] for path in (one, other, one, other)]
+    printed = [python(code, tmp_path / "cache", path).split() for path in (one, other, one, other)]
+    numbers = [number for number, _, _ in printed]
     assert numbers[0] == numbers[2] != numbers[1] == numbers[3]
+    assert [misses for _, misses, _ in printed] == ["1", "1", "0", "0"]
 
 
 def test_a_package_folder_that_cannot_be_written_is_no_obstacle(tmp_path: Path) -> None:
