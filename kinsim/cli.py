@@ -92,12 +92,35 @@ def scenes() -> None:
 
 @app.command()
 @_told()
+def rooms() -> None:
+    """List every family and its variants, each with a line and the equation it implements."""
+    from .overview import room_list
+
+    room_list()
+
+
+@app.command()
+@_told()
 def run(
     name: SceneName,
     method: Annotated[MethodKind | None, typer.Option(help="Take this wing instead of the one in the file.")] = None,
     settings: Settings = None,
     out: Annotated[Path | None, typer.Option(metavar="RUN.NC", help="Write the run to this netCDF file.")] = None,
     plot: Annotated[Path | None, typer.Option(metavar="RUN.PNG", help="Draw it: .png, .pdf or .svg.")] = None,
+    dump: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="KEY=VALUE,...",
+            help="Keep f: name=f, stage=equilibrium|transport|force, every=1000, x=-1:1, xi=-1:1; may be repeated.",
+        ),
+    ] = None,
+    density: Annotated[
+        Path | None, typer.Option(metavar="F.PNG", help="Draw the first --dump over (x, xi), and cuts beside M.")
+    ] = None,
+    cut: Annotated[list[float] | None, typer.Option(metavar="X", help="Where --density cuts; may be repeated.")] = None,
+    causes: Annotated[
+        bool, typer.Option("--causes", help="Book what each stage did to mass, momentum, energy and entropy.")
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")] = False,
     force: Force = False,
 ) -> None:
@@ -106,17 +129,22 @@ def run(
     Exit code: 0 if it went to its end, 1 if it was stopped, 2 if the input is bad, 130 if it was interrupted.
     """
     from .overview import saved_every
-    from .plot import check_picture, plot_run
+    from .plot import check_picture, plot_density, plot_run
     from .progress import Watched
-    from .report import run_report
+    from .read import read_dumps
+    from .report import causes_report, run_report
     from .simulate import simulate
     from .store import check_destination
 
     file = _read(name, settings, method)
     if out:
         check_destination(out)
-    if plot:
-        check_picture(plot)
+    for picture in (plot, density):
+        if picture:
+            check_picture(picture)
+    dumps = read_dumps(dump or [])
+    if density and not dumps:
+        raise InputError("--density draws a dump; ask for one, for example --dump every=1000")
     with Watched(quiet) as progress:
         ran = simulate(
             file.scene,
@@ -124,16 +152,20 @@ def run(
             file.clock,
             saved_every(file),
             force=force,
-            dumps=_final_density(file),
+            dumps=[*dumps, *_final_density(file)],
+            causes=causes,
             progress=progress,
         )
     if out:
         ran.to_netcdf(out)
     if plot:
         plot_run(ran, plot)
+    if density:
+        plot_density(ran, density, dumps[0].name, cut or ())
     code = EXIT_CODES.get(ran.verdict.kind, 1)
     if not quiet:
         run_report(ran, file.method, {"--out": out, "--plot": plot}, Path(name).stem)
+        causes_report(ran)
     elif code:
         _complain(str(ran.verdict), code)
     raise typer.Exit(code)
@@ -141,18 +173,34 @@ def run(
 
 @app.command()
 @_told()
-def compare(name: SceneName, settings: Settings = None, force: Force = False) -> None:
+def compare(
+    name: SceneName,
+    settings: Settings = None,
+    seams: Annotated[bool, typer.Option("--seams", help="Compare stage by stage, from each saved state.")] = False,
+    plot: Annotated[Path | None, typer.Option(metavar="SEAMS.PNG", help="Draw the seams: .png, .pdf or .svg.")] = None,
+    force: Force = False,
+) -> None:
     """Measure the closed-form twin against the kinetic run."""
     from .measure.compare import compare
     from .overview import saved_every
+    from .plot import check_picture, plot_seams
     from .progress import Watched
-    from .report import comparison
+    from .report import comparison, seam_report
 
+    if plot:
+        check_picture(plot)
+        seams = True
     file = _read(name, settings, MethodKind.KINETIC)
     methods = [file.method, file.method.twin]  # type: ignore[union-attr]
     with Watched() as progress:
-        measured = compare(file.scene, methods, file.clock, saved_every(file), force=force, progress=progress)
+        measured = compare(
+            file.scene, methods, file.clock, saved_every(file), force=force, seams=seams, progress=progress
+        )
     comparison(measured)
+    if seams:
+        seam_report(measured)
+    if plot:
+        plot_seams(measured, plot)
     raise typer.Exit(max(EXIT_CODES.get(kind, 1) for kind in measured["verdict_kind"].to_numpy().tolist()))
 
 

@@ -14,6 +14,7 @@ from rich.table import Table
 
 from .clock import Fixed
 from .read import SceneFile
+from .rooms import rooms
 
 ROWS = 100
 """States that a command keeps, about."""
@@ -24,6 +25,16 @@ def scene_list(scenes: Mapping[str, Mapping[str, Any]]) -> None:
     table = plain_table("scene", "figure", "what happens")
     for name, keys in scenes.items():
         table.add_row(name, keys["figure"], keys["title"])
+    Console().print(table)
+
+
+def room_list() -> None:
+    """Every variant of every family, with the key and the word that choose it in a scene file."""
+    table = plain_table("key", "value", "what it is")
+    before = ""
+    for room in rooms():
+        table.add_row("" if room.key == before else room.key, room.name, escape(room.line))
+        before = room.key
     Console().print(table)
 
 

@@ -17,6 +17,7 @@ from .finding import one_line
 from .method import Kinetic, Macroscopic, Method
 from .scene import Scene
 from .value import value
+from .watch.dump import Dump
 
 BUILT_IN = Path(__file__).parent / "scenes"
 
@@ -124,6 +125,28 @@ def take_method(keys: dict[str, Any], kind: str) -> None:
     method = keys.get("method", {})
     if isinstance(method, dict) and method.get("kind", "kinetic") != kind:
         keys["method"] = {"kind": kind, **{key: method[key] for key in ("scheme", "coupling") if key in method}}
+
+
+def read_dumps(requests: Sequence[str]) -> list[Dump]:
+    """Dumps from the command line, such as ``stage=transport,every=500,x=-2:2``; unnamed ones bear their stage's name.
+
+    Raises:
+        InputError: A key is unknown or its value is none.
+    """
+    dumps = []
+    for request in requests:
+        keys: dict[str, Any] = {}
+        for part in filter(None, request.split(",")):
+            key, equals, text = part.partition("=")
+            if not equals:
+                raise InputError(f"--dump {request}: {part!r} is not KEY=VALUE; write for example every=500")
+            keys[key.strip()] = [_toml_value(end) for end in text.split(":")] if ":" in text else _toml_value(text)
+        keys.setdefault("name", keys.get("stage", "force"))
+        try:
+            dumps.append(TypeAdapter(Dump).validate_python(keys))
+        except ValidationError as error:
+            raise InputError(one_line(error, f"--dump {request}", Dump, separator=": ")) from None
+    return dumps
 
 
 def _find(name_or_path: str | Path) -> Path:

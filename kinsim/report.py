@@ -13,6 +13,7 @@ from rich.table import Table
 
 from .kinetic.velocity import Fitted, Uniform
 from .measure.compare import method_name
+from .measure.seams import STAGES
 from .method import Kinetic, Macroscopic
 from .overview import plain_table
 from .run import Run
@@ -112,3 +113,30 @@ def comparison(measured: xarray.Dataset) -> None:
         at = measured.isel(method=number)
         table.add_row(name, f"{float(at['wall_time']):.3g} s", str(at["verdict"].item()))
     console.print(table)
+
+
+def causes_report(run: Run) -> None:
+    """What each stage did over the whole run, if it was booked."""
+    if run.causes is None:
+        return
+    summed, total = run.causes["sum"][-1], run.causes["total"][-1]
+    quantities = [str(name) for name in summed["quantity"].to_numpy()]
+    table = plain_table("stage", *quantities, title="what each stage did, summed over all steps", right=True)
+    for stage in summed["stage"].to_numpy():
+        table.add_row(str(stage), *(f"{float(summed.sel(stage=stage, quantity=name)):+.3e}" for name in quantities))
+    table.add_row("all", *(f"{float(total.sel(quantity=name)):+.3e}" for name in quantities), style="bold")
+    Console().print(table)
+
+
+def seam_report(measured: xarray.Dataset) -> None:
+    """Where the wings part: the largest difference after each stage over all saved states."""
+    table = plain_table(
+        "after", *(str(twin) for twin in measured["twin"].to_numpy()), title="seams, largest difference"
+    )
+    for stage, words in STAGES.items():
+        if f"seam_{stage}" in measured:
+            each = np.abs(measured[f"seam_{stage}"].to_numpy()).reshape(measured.sizes["twin"], -1)
+            table.add_row(words, *(f"{largest:.3e}" for largest in each.max(axis=1)))
+    unlike = measured["seam_slow"].to_numpy().sum(axis=(1, 2))
+    table.add_row("cells judged slow by one wing only", *(str(count) for count in unlike.tolist()))
+    Console().print(table)

@@ -11,6 +11,7 @@ import numpy as np
 from .balance.stages import Array
 from .clock import AnyClock, Fixed
 from .errors import InputError
+from .interrupt import Deferred
 from .kinetic.velocity import Uniform
 from .kinetic.wing import Density
 from .method import Kinetic, Macroscopic
@@ -67,7 +68,8 @@ def simulate(
     loop.watch(dumps, causes)
     began = time.perf_counter()
     try:
-        verdict = loop.run(progress)
+        with Deferred() as interrupt:
+            verdict = loop.run(progress, interrupt)
     except KeyboardInterrupt:
         verdict = loop.verdict("interrupted", "interrupted")
     return loop.finish(verdict, time.perf_counter() - began)
@@ -80,7 +82,7 @@ def find_bound(scene: Scene, method: Kinetic, clock: AnyClock, force: bool = Fal
     """
     twin = _Loop(scene, method.twin, clock, save_every=2**62, force=force)
     try:
-        verdict = twin.run(None)
+        verdict = twin.run(None, Deferred())
     except InputError:  # a first step over the bound; the grid counts its nodes, and judges by itself
         verdict = None
     if verdict is not None and verdict.kind == "non-finite":
@@ -116,6 +118,10 @@ class _Loop:
     def watch(self, dumps: Sequence[Dump], causes: bool) -> None:
         """Ask for densities and for the moment ledger."""
         density = self.stepper.density
+        names = [dump.name for dump in dumps]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(f"two dumps are called {name!r}; give each a name of its own")
         if density is None:
             if dumps or causes:
                 raise InputError(
@@ -126,12 +132,12 @@ class _Loop:
         if causes:
             self.causes = Causes(self.scene, self.stepper, density)
 
-    def run(self, progress: Progress | None) -> Verdict:
+    def run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
         """Step until the clock or a fault ends it."""
         scene, clock, stepper, dx = self.scene, self.clock, self.stepper, self.scene.cells.dx
         self.ledger.start(self.h, self.q)
         self._save()
-        while True:
+        while not interrupt.asked:
             speed = stepper.begin(self.h, self.q)
             reach = stepper.reach()
             dt = clock.next_dt(self.step, self.t, speed, dx)
@@ -162,6 +168,7 @@ class _Loop:
                 self._save()
             if progress and self.step % 16 == 0:
                 progress(clock.progress(self.step, self.t))
+        return self.verdict("interrupted", "interrupted")
 
     def verdict(self, kind: VerdictKind, message: str, cell: int | None = None) -> Verdict:
         """A verdict on the run so far, in words, with the step."""
@@ -234,4 +241,5 @@ class _Loop:
 
 def _over_the_bound(courant: float, dt: float, allowed: float, clock: AnyClock) -> str:
     remedy = f"take dt <= {allowed:.4g}" if isinstance(clock, Fixed) else "take a Courant number of at most 1"
-    return f"dt = {dt:.4g} breaks the CFL bound (28): Courant number {courant:.4g}; {remedy}, or force it"
+    broken = f"dt = {dt:.4g} breaks the CFL bound (28): Courant number {courant:.4g}"
+    return f"{broken}; {remedy}, or force it (--force, force=True)"

@@ -1,4 +1,4 @@
-"""A run as a picture. The only file that needs matplotlib."""
+"""A run as a picture."""
 
 from __future__ import annotations
 
@@ -7,17 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .balance.stages import Array
-from .errors import InputError
-from .run import Run
-from .store import check_destination, replacing
-from .watch.dump import LONG_NAMES
+from ..balance.stages import Array
+from ..run import Run
+from ..watch.dump import LONG_NAMES
+from .picture import save
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-FORMATS = ("png", "pdf", "svg")
-"""What a picture may be, by its suffix."""
 
 CURVES = 6
 """States shown, the first and the last included."""
@@ -29,22 +25,7 @@ def plot_run(run: Run, path: str | Path) -> Path:
     Raises:
         InputError: The suffix is none of these, or the file cannot be put there.
     """
-    path = check_picture(path)
-    with replacing(path) as name:
-        draw(run).savefig(name, format=path.suffix[1:].lower(), dpi=150)
-    return path
-
-
-def check_picture(path: str | Path) -> Path:
-    """`path`, if a picture can be put there.
-
-    Raises:
-        InputError: Its suffix names no kind of picture, or no file can be put there.
-    """
-    path = Path(path)
-    if path.suffix[1:].lower() not in FORMATS:
-        raise InputError(f"{path}: is no picture; end its name in .{', .'.join(FORMATS)}")
-    return check_destination(path)
+    return save(draw(run), path)
 
 
 def draw(run: Run) -> Figure:
