@@ -1,3 +1,5 @@
+from . import exact as exact
+from . import printed as printed
 from .clock import Courant as Courant
 from .clock import Fixed as Fixed
 from .errors import InputError as InputError
@@ -5,6 +7,8 @@ from .kinetic.velocity import Fitted as Fitted
 from .kinetic.velocity import Uniform as Uniform
 from .kinetic.velocity import Window as Window
 from .measure.compare import compare as compare
+from .measure.crosscheck import CrossCheck as CrossCheck
+from .measure.crosscheck import crosscheck as crosscheck
 from .method import Kinetic as Kinetic
 from .method import Macroscopic as Macroscopic
 from .model.cells import Cells as Cells

@@ -206,6 +206,25 @@ def compare(
 
 @app.command()
 @_told()
+def crosscheck(
+    flux: Annotated[str, typer.Argument(metavar="MODULE:NAME", help="A flux(hl, ul, hr, ur, beta) -> (F1, F2).")],
+    beta: Annotated[float, typer.Option(help="As in equation (1).")] = 0.4,
+) -> None:
+    """Judge a flux of your own, regime by regime: quadrature, grid, consistency, mirror symmetry.
+
+    The module is imported from the current folder or the Python path, and so its code runs. Exit code 1 if it fails.
+    """
+    from .measure.crosscheck import crosscheck
+    from .report import crosscheck_report
+    from .userflux import load_flux
+
+    found = crosscheck(load_flux(flux), beta=beta)
+    crosscheck_report(found, flux)
+    raise typer.Exit(0 if found.passes else 1)
+
+
+@app.command()
+@_told()
 def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file, or a built-in scene.")]) -> None:
     """Validate a scene file, and print it with all that was filled in."""
     from .overview import filled_in, first_courant

@@ -13,6 +13,7 @@ from rich.table import Table
 
 from .kinetic.velocity import Fitted, Uniform
 from .measure.compare import method_name
+from .measure.crosscheck import CrossCheck
 from .measure.seams import STAGES
 from .method import Kinetic, Macroscopic
 from .overview import plain_table
@@ -140,3 +141,17 @@ def seam_report(measured: xarray.Dataset) -> None:
     unlike = measured["seam_slow"].to_numpy().sum(axis=(1, 2))
     table.add_row("cells judged slow by one wing only", *(str(count) for count in unlike.tolist()))
     Console().print(table)
+
+
+def crosscheck_report(found: CrossCheck, name: str) -> None:
+    """What was found about a flux, regime by regime."""
+    title = f"{name}: largest errors in flux scales, beta = {found.beta:g}"
+    table = plain_table("regime", "quadrature", "grid", "consistency", "mirror", "", title=title)
+    for regime in found.regimes:
+        errors = (regime.quadrature, regime.grid, regime.consistency, regime.mirror)
+        mark = "[green]passes[/]" if regime.passes else "[red]fails[/]"
+        table.add_row(regime.name, *(f"{error:.1e}" for error in errors), mark)
+    console = Console()
+    console.print(table)
+    if found.first_failure:
+        console.print(f"first fails: {escape(str(found.first_failure))}", highlight=False, soft_wrap=True)

@@ -8,9 +8,9 @@ from functools import cache
 
 import mpmath
 import numpy as np
-import printed
 import pytest
 
+from kinsim import printed
 from kinsim.exact import Riemann
 from kinsim.macroscopic.half_moments import flux_closed, half_moments_closed
 

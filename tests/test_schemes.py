@@ -6,12 +6,24 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import printed
 import pytest
 from conftest import SCENES
 from states import BETA, ghosted, random_states, scene_with
 
-from kinsim import Cells, Coulomb, Courant, Fixed, Kinetic, Macroscopic, Profile, Scene, Uniform, simulate, step
+from kinsim import (
+    Cells,
+    Coulomb,
+    Courant,
+    Fixed,
+    Kinetic,
+    Macroscopic,
+    Profile,
+    Scene,
+    Uniform,
+    printed,
+    simulate,
+    step,
+)
 
 EPS = float(np.finfo(float).eps)
 

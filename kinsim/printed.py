@@ -1,11 +1,38 @@
 """The formulas of sections 3.2 and 4 exactly as printed, and the same with one misprint mended at a time.
 
-Nothing here is used by kinsim; the tests show with it which printed terms are wrong.
+No scheme of kinsim uses them. They are the worked example of `kinsim.crosscheck`, and the tests show with them which
+printed terms are wrong.
 """
 
 from __future__ import annotations
 
 from math import asin, cos, pi, sin, sqrt
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+
+def flux(
+    h_left: ArrayLike, u_left: ArrayLike, h_right: ArrayLike, u_right: ArrayLike, beta: float
+) -> tuple[Array, Array]:
+    """(F^1, F^2) = (I1 + I2, I3 + I4) as printed; dry sides give nothing."""
+    states = np.broadcast_arrays(h_left, u_left, h_right, u_right)
+    columns = [np.ravel(state).astype(float).tolist() for state in states]
+    pairs = [_printed(hl, ul, hr, ur, beta) for hl, ul, hr, ur in zip(*columns, strict=True)]
+    first, second = (np.array(column).reshape(states[0].shape) for column in zip(*pairs, strict=True))
+    return first, second
+
+
+def _printed(h_left: float, u_left: float, h_right: float, u_right: float, beta: float) -> tuple[float, float]:
+    first = second = 0.0
+    if h_left > 0:
+        first, second = I1(h_left, u_left, beta), I3(h_left, u_left, beta)
+    if h_right > 0:
+        first += I2(h_right, u_right, beta)
+        second += I4(h_right, u_right, beta, u_left=u_left)
+    return first, second
 
 
 def I1(h: float, u: float, beta: float) -> float:
@@ -15,7 +42,7 @@ def I1(h: float, u: float, beta: float) -> float:
         return h * u
     if a1 >= 1:
         return 0.0
-    return 2 / (3 * pi) * sqrt(2 * beta) * h**1.5 * cos(asin(a1)) ** 3 + 2 / pi * h * u * (
+    return 2 / (3 * pi) * sqrt(2 * beta) * sqrt(h) ** 3 * cos(asin(a1)) ** 3 + 2 / pi * h * u * (
         pi / 4 - asin(a1) / 2 - sin(2 * asin(a1)) / 4
     )
 
@@ -27,7 +54,7 @@ def I2(h: float, u: float, beta: float) -> float:
         return 0.0
     if a2 >= 1:
         return h * u
-    return -2 / (3 * pi) * sqrt(2 * beta) * h**1.5 * cos(asin(a2)) ** 3 + 2 / pi * h * u * (
+    return -2 / (3 * pi) * sqrt(2 * beta) * sqrt(h) ** 3 * cos(asin(a2)) ** 3 + 2 / pi * h * u * (
         pi / 4 + asin(a2) / 2 + sin(2 * asin(a2)) / 4
     )
 
@@ -72,7 +99,7 @@ def I1_tilde(h: float, u: float, beta: float, *, bracket_mended: bool = False) -
     factor = 2 / pi * h * u
     sine = -sin(2 * asin(a1)) / 4
     return (
-        2 / (3 * pi) * sqrt(2 * beta) * h**1.5 * cos(asin(a1)) ** 3
+        2 / (3 * pi) * sqrt(2 * beta) * sqrt(h) ** 3 * cos(asin(a1)) ** 3
         + factor * (pi / 4 - asin(a1) / 2)
         + (factor * sine if bracket_mended else sine)
     )
@@ -88,7 +115,7 @@ def I2_tilde(h: float, u: float, beta: float, *, bracket_mended: bool = False) -
     factor = 2 / pi * h * u
     sine = sin(2 * asin(a2)) / 4
     return (
-        -2 / (3 * pi) * sqrt(2 * beta) * h**1.5 * cos(asin(a2)) ** 3
+        -2 / (3 * pi) * sqrt(2 * beta) * sqrt(h) ** 3 * cos(asin(a2)) ** 3
         + factor * (pi / 4 + asin(a2) / 2)
         + (factor * sine if bracket_mended else sine)
     )
@@ -103,7 +130,7 @@ def I3_tilde(h: float, u: float, beta: float) -> float:
         return 0.0
     return (
         4 / pi * beta * h**2 * (pi / 16 - asin(a1) / 8 + sin(4 * asin(a1)) / 32)
-        + 4 / (3 * pi) * sqrt(2 * beta) * h**1.5 * u * cos(asin(a1)) ** 3
+        + 4 / (3 * pi) * sqrt(2 * beta) * sqrt(h) ** 3 * u * cos(asin(a1)) ** 3
         + 2 / pi * h * u**2 * (pi / 4 - asin(a1) / 2 - sin(2 * asin(a1)) / 4)
     )
 
@@ -117,7 +144,7 @@ def I4_tilde(h: float, u: float, beta: float) -> float:
         return h * u**2 + beta * h**2 / 2
     return (
         4 / pi * beta * h**2 * (pi / 16 + asin(a2) / 8 - sin(4 * asin(a2)) / 32)
-        - 4 / (3 * pi) * sqrt(2 * beta) * h**1.5 * u * cos(asin(a2)) ** 3
+        - 4 / (3 * pi) * sqrt(2 * beta) * sqrt(h) ** 3 * u * cos(asin(a2)) ** 3
         + 2 / pi * h * u**2 * (pi / 4 + asin(a2) / 2 + sin(2 * asin(a2)) / 4)
     )
 

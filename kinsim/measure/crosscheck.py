@@ -1,0 +1,227 @@
+"""Judge a flux that somebody else wrote: against quadrature, against the grid, and against itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+from ..kinetic.equilibrium import EQUILIBRIA, Status
+from ..kinetic.transport import half_sums
+from ..kinetic.velocity import Grid
+
+Array = NDArray[np.float64]
+Flux = Callable[..., tuple[Any, Any]]
+States = tuple[Array, Array, Array, Array]
+
+NODES = 512
+"""Velocity cells of the grid that a flux is held against."""
+
+QUADRATURE = 40
+"""Gauss-Legendre nodes in theta, xi = u + c sin theta; the integrand is entire, and so many are exact to rounding."""
+
+
+@dataclass(frozen=True)
+class Failure:
+    """The first state at which a check fails.
+
+    Attributes:
+        check: Which one.
+        state: h_left, u_left, h_right, u_right.
+        found, expected: (F1, F2) as given and as they should be.
+    """
+
+    check: str
+    state: tuple[float, float, float, float]
+    found: tuple[float, float]
+    expected: tuple[float, float]
+
+    def __str__(self) -> str:
+        h_left, u_left, h_right, u_right = self.state
+        return (
+            f"{self.check} at (h, u) = ({h_left:.6g}, {u_left:.6g}) | ({h_right:.6g}, {u_right:.6g}): "
+            f"F = ({self.found[0]:.6g}, {self.found[1]:.6g}), expected ({self.expected[0]:.6g}, {self.expected[1]:.6g})"
+        )
+
+
+@dataclass(frozen=True)
+class Regime:
+    """What was found in one regime; errors are maxima over its states, in flux scales h (|u| + c)^k of the two sides.
+
+    Attributes:
+        name: Which regime.
+        quadrature: Difference to half-range moments of M by quadrature: the flux of (24).
+        grid: The same to sums over a velocity grid of `NODES` cells, whose own error is of order n^-2.
+        consistency: |F(U, U) - F(U)|, F(U) = (h u, h u^2 + beta h^2/2).
+        mirror: Departure from mirror symmetry, F1 odd and F2 even under x to -x.
+        failure: Where the first check beyond the tolerance fails, or None.
+    """
+
+    name: str
+    quadrature: float
+    grid: float
+    consistency: float
+    mirror: float
+    failure: Failure | None
+
+    @property
+    def passes(self) -> bool:
+        """Whether every check holds."""
+        return self.failure is None
+
+
+@dataclass(frozen=True)
+class CrossCheck:
+    """The findings, regime by regime."""
+
+    beta: float
+    tolerance: float
+    regimes: tuple[Regime, ...]
+
+    @property
+    def passes(self) -> bool:
+        """Whether every check holds in every regime."""
+        return all(regime.passes for regime in self.regimes)
+
+    @property
+    def first_failure(self) -> Failure | None:
+        """The first state at which anything fails, or None."""
+        return next((regime.failure for regime in self.regimes if regime.failure), None)
+
+
+def crosscheck(
+    flux: Flux, *, beta: float = 0.4, count: int = 400, tolerance: float = 1e-12, seed: int = 0
+) -> CrossCheck:
+    """Check a numerical flux of the kinetic scheme, regime by regime.
+
+    Args:
+        flux: Vectorised, ``flux(h_left, u_left, h_right, u_right, beta) -> (F1, F2)`` for arrays of one shape.
+        beta: As in (1), > 0.
+        count: Random states per regime.
+        tolerance: Largest error allowed, in flux scales.
+        seed: Of the random states.
+
+    Raises:
+        InputError: The flux raises, or does not return two arrays of the shape it was given.
+    """
+    if not (beta > 0 and count > 0 and tolerance > 0):
+        raise InputError("crosscheck: beta, count and tolerance must be above 0")
+    dice = np.random.default_rng(seed)
+    judged = (_judge(name, states, flux, beta, tolerance) for name, states in regimes(dice, count, beta).items())
+    return CrossCheck(beta, tolerance, tuple(judged))
+
+
+def regimes(dice: np.random.Generator, count: int, beta: float) -> dict[str, States]:
+    """Random states (h_left, u_left, h_right, u_right), each of shape (count,), for every regime."""
+
+    def height(low: float = -2.0, high: float = 1.0) -> Array:
+        return 10.0 ** dice.uniform(low, high, count)
+
+    def moving(h: Array, low: float, high: float, signs: tuple[int, ...] = (-1, 1)) -> Array:
+        return dice.choice(signs, count) * dice.uniform(low, high, count) * np.sqrt(2.0 * beta * h)
+
+    def near(h: Array) -> Array:
+        a = 1.0 + dice.choice((-1, 1), count) * 10.0 ** dice.uniform(-12, -1, count)
+        return dice.choice((-1, 1), count) * a * np.sqrt(2.0 * beta * h)
+
+    h, k, thin = height(), height(), height(-12.0, -6.0)
+    dry = np.zeros(count)
+    return {
+        "at rest": (h, dry.copy(), k, dry.copy()),
+        "transonic": (h, moving(h, 0, 1), k, moving(k, 0, 1)),
+        "supersonic to the right": (h, moving(h, 1, 4, (1,)), k, moving(k, 1, 4, (1,))),
+        "supersonic to the left": (h, moving(h, 1, 4, (-1,)), k, moving(k, 1, 4, (-1,))),
+        "parting and colliding": (h, moving(h, 1, 4), k, moving(k, 1, 4)),
+        "a near -1 and 1": (h, near(h), k, near(k)),
+        "near vacuum": (thin, moving(thin, 0, 2), k, moving(k, 0, 2)),
+        "dry on one side": (h, moving(h, 0, 2), dry.copy(), dry.copy()),
+    }
+
+
+def by_quadrature(states: States, beta: float) -> tuple[Array, Array]:
+    """(F1, F2) of (24) by Gauss-Legendre quadrature of xi^k M over both half-ranges."""
+    h_left, u_left, h_right, u_right = states
+    left = [_half(h_left, u_left, beta, k) for k in (1, 2)]
+    right = [_half(h_right, -u_right, beta, k) for k in (1, 2)]
+    return left[0] - right[0], left[1] + right[1]
+
+
+def _half(h: Array, u: Array, beta: float, k: int) -> Array:
+    """The k-th moment of M over xi > 0."""
+    nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
+    c = np.sqrt(2.0 * beta * h)
+    start = np.arcsin(np.clip(np.divide(-u, c, out=np.where(u > 0, -1.0, 1.0), where=c > 0), -1.0, 1.0))
+    middle, half = 0.5 * (0.5 * np.pi + start), 0.5 * (0.5 * np.pi - start)
+    theta = middle[:, None] + half[:, None] * nodes
+    xi = u[:, None] + c[:, None] * np.sin(theta)
+    moment: Array = (xi**k * np.cos(theta) ** 2) @ weights * half * 2.0 * h / np.pi
+    return moment
+
+
+def on_grid(states: States, beta: float) -> tuple[Array, Array]:
+    """(F1, F2) of (24) by sums over a velocity grid, cell averages of M."""
+    h_left, u_left, h_right, u_right = states
+    reach = max(float(np.max(np.abs(u) + np.sqrt(2.0 * beta * h))) for h, u in ((h_left, u_left), (h_right, u_right)))
+    grid = Grid(NODES, 2.0 * reach / NODES)
+    rows, room = np.empty((h_left.size, NODES)), EQUILIBRIA["cell-average"]
+    room.fill(h_left, u_left, h_right, u_right, beta, grid, rows, Status.empty(h_left.size))
+    P1, P2, N1, N2 = np.empty((4, h_left.size))
+    half_sums(rows, *room.weights(grid), P1, P2, N1, N2)
+    return P1 + N1, P2 + N2
+
+
+def _judge(name: str, states: States, flux: Flux, beta: float, tolerance: float) -> Regime:
+    h_left, u_left, h_right, u_right = states
+    mirrored = (h_right, -u_right, h_left, -u_left)
+    same = (h_left, u_left, h_left, u_left)
+    found, turned, alone = (_ask(flux, given, beta) for given in (states, mirrored, same))
+    scale = _scale(h_left, u_left, beta) + _scale(h_right, u_right, beta)
+    exact = by_quadrature(states, beta)
+    closed = (h_left * u_left, h_left * u_left**2 + 0.5 * beta * h_left**2)
+    checks = (
+        ("quadrature", states, found, exact, scale),
+        ("consistency F(U, U)", same, alone, closed, 2.0 * _scale(h_left, u_left, beta)),
+        ("mirror symmetry", states, found, (-turned[0], turned[1]), scale),
+    )
+    errors, failure = [], None
+    for check, given, got, expected, size in checks:
+        off = _off(got, expected, size)
+        errors.append(float(off.max()))
+        bad = np.flatnonzero(~(off <= tolerance))
+        if failure is None and bad.size:
+            i = int(bad[0])
+            state = (float(given[0][i]), float(given[1][i]), float(given[2][i]), float(given[3][i]))
+            pairs = [(float(pair[0][i]), float(pair[1][i])) for pair in (got, expected)]
+            failure = Failure(f"{check}, {name}", state, pairs[0], pairs[1])
+    grid = float(_off(found, on_grid(states, beta), scale).max())
+    return Regime(name, errors[0], grid, errors[1], errors[2], failure)
+
+
+def _ask(flux: Flux, states: States, beta: float) -> tuple[Array, Array]:
+    try:
+        with np.errstate(all="ignore"):
+            first, second = (np.asarray(part, dtype=float) for part in flux(*(s.copy() for s in states), beta))
+    except Exception as error:  # somebody else's code may raise anything
+        raise InputError(f"crosscheck: the flux failed with {type(error).__name__}: {error}") from error
+    if first.shape != states[0].shape or second.shape != states[0].shape:
+        raise InputError(
+            f"crosscheck: the flux returned shapes {first.shape} and {second.shape} for states of {states[0].shape}"
+        )
+    return first, second
+
+
+def _scale(h: Array, u: Array, beta: float) -> Array:
+    """The flux scales h (|u| + c) and h (|u| + c)^2, shape (2, count)."""
+    speed = np.abs(u) + np.sqrt(2.0 * beta * h)
+    return np.array([h * speed, h * speed**2])
+
+
+def _off(found: tuple[Array, Array], expected: tuple[Array, Array], scale: Array) -> Array:
+    """The larger error of the two components in flux scales, shape (count,); NaN counts as infinite."""
+    size = np.maximum(scale, np.finfo(float).tiny)
+    off: Array = np.max(np.abs(np.array(found) - np.array(expected)) / size, axis=0)
+    return np.where(np.isnan(off), np.inf, off)
