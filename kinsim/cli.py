@@ -225,6 +225,28 @@ def crosscheck(
 
 @app.command()
 @_told()
+def validate(
+    full: Annotated[bool, typer.Option("--full", help="The paper's sizes and finer; takes long.")] = False,
+    only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="This script only; may be repeated.")] = None,
+    out: Annotated[Path, typer.Option(metavar="FOLDER", help="Where the report goes.")] = Path("out/validation"),
+) -> None:
+    """Run the validation scripts of this checkout, and write one page of what they found.
+
+    Exit code 1 if a claim fails.
+    """
+    from .progress import Watched
+    from .report import validation_report
+    from .validate import find_scripts, holds, validate
+
+    scripts = find_scripts(only or ())
+    with Watched() as progress:
+        records = validate(scripts, out, full, told=progress.tell)
+    validation_report(records, out)
+    raise typer.Exit(0 if holds(records) else 1)
+
+
+@app.command()
+@_told()
 def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file, or a built-in scene.")]) -> None:
     """Validate a scene file, and print it with all that was filled in."""
     from .overview import filled_in, first_courant

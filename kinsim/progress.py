@@ -36,6 +36,10 @@ class Watched:
     def __exit__(self, *details: object) -> None:
         self._open.close()
 
+    def tell(self, what: str, share: float) -> None:
+        """Work on `what` has begun; `share` of the whole is done."""
+        self._bar.update(self._task, completed=share, description=what)
+
     def __call__(self, share: float) -> None:
         self._bar.update(self._task, completed=share, description="running")
 

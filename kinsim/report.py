@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from rich.console import Console
@@ -155,3 +155,18 @@ def crosscheck_report(found: CrossCheck, name: str) -> None:
     console.print(table)
     if found.first_failure:
         console.print(f"first fails: {escape(str(found.first_failure))}", highlight=False, soft_wrap=True)
+
+
+def validation_report(records: Sequence[Mapping[str, Any]], out: Path) -> None:
+    """The claims, script by script, and where the page is."""
+    table = plain_table("claim", "measured", "bound", "", "script")
+    for record in records:
+        for claim in record["claims"]:
+            mark = "[green]holds[/]" if claim["holds"] else "[red]fails[/]"
+            measured = f"{claim['measured']:.4g}"
+            table.add_row(escape(claim["sentence"]), measured, escape(claim["bound"]), mark, record["name"])
+        if record["error"]:
+            table.add_row(f"[red]{escape(record['error'])}[/]", "", "", "[red]fails[/]", record["name"])
+    console = Console()
+    console.print(table)
+    console.print(f"report: {out / 'index.html'}", highlight=False, soft_wrap=True)

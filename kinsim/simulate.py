@@ -188,7 +188,7 @@ class _Loop:
     def finish(self, verdict: Verdict, wall_time: float) -> Run:
         """The run as a value; the last good state is its last row."""
         if self.times[-1] != self.t:
-            self.ledger.save(self.h, self.q)
+            self.ledger.save(self.h, self.q, f_is_of_state=verdict.kind != "non-finite")
             self._save()
         return Run(
             scene=self.scene, method=self.method, clock=self.clock, t=np.array(self.times),

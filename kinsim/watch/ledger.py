@@ -86,8 +86,8 @@ class Ledger:
             self.least_density = min(self.least_density, self._f_min)
             self._note_status(density.status)
 
-    def save(self, h: Array, q: Array, started: bool = True) -> None:
-        """Make a row of what was noted since the row before."""
+    def save(self, h: Array, q: Array, started: bool = True, f_is_of_state: bool = True) -> None:
+        """Make a row of what was noted since the row before; f may belong to a step that was given up."""
         dx = self._scene.cells.dx
         row = {
             "mass": math.fsum(h) * dx, "momentum": math.fsum(q) * dx,
@@ -97,7 +97,7 @@ class Ledger:
         if density is not None:
             row |= dict.fromkeys(DENSITY_COLUMNS, 0.0)
             if started:
-                row |= departure(density, h, q, dx)
+                row |= departure(density, h, q, dx) if f_is_of_state else dict.fromkeys(DEPARTURE, math.nan)
                 row |= {"f_min": self._f_min, "fallbacks": self._fallbacks}
                 row |= {"iterations": self._iterations, "residual": self._residual}
         self._rows.append(row)
@@ -116,6 +116,9 @@ class Ledger:
         self._h_min = self._f_min = math.inf
         self._u_max = self._courant = self._residual = 0.0
         self._iterations = 0
+
+
+DEPARTURE = ("sampling_mass", "sampling_momentum", "f_distance", "f_tail")
 
 
 def departure(density: Density, h: Array, q: Array, dx: float) -> dict[str, float]:
