@@ -34,8 +34,8 @@ DENSITY_COLUMNS = {
     "f_min": "least entry of f since the row before",
     "f_distance": "integral of |f - M| over x and xi, M of the new state",
     "f_tail": "mass of f where M of the new state is zero",
-    "fallbacks": "cells times steps so far in which the equilibrium fell back to few nodes",
-    "iterations": "most iterations of the equilibrium in a cell since the row before",
+    "fallbacks": "cells and faces times steps so far in which the equilibrium fell back to few nodes",
+    "iterations": "most iterations of the equilibrium in a cell or face since the row before",
     "residual": "largest relative defect that the equilibrium left since the row before",
 }
 """Further columns of a kinetic run on a velocity grid."""
@@ -84,7 +84,8 @@ class Ledger:
         if density is not None:
             self._f_min = min(self._f_min, float(density.f.min()))
             self.least_density = min(self.least_density, self._f_min)
-            self._note_status(density.status)
+            self._note_status(density.status, slice(1, -1))
+            self._note_status(density.face_status, slice(None))
 
     def save(self, h: Array, q: Array, started: bool = True, f_is_of_state: bool = True) -> None:
         """Make a row of what was noted since the row before; f may belong to a step that was given up."""
@@ -107,8 +108,8 @@ class Ledger:
         """The ledger, each column of shape (nt,)."""
         return {name: np.array([row[name] for row in self._rows]) for name in self._rows[0]}
 
-    def _note_status(self, status: Status) -> None:
-        self._fallbacks += int(np.count_nonzero(status.fallback[1:-1]))
+    def _note_status(self, status: Status, rows: slice) -> None:
+        self._fallbacks += int(np.count_nonzero(status.fallback[rows]))
         self._iterations = max(self._iterations, int(status.iterations.max()))
         self._residual = max(self._residual, float(status.residual.max()))
 
