@@ -31,7 +31,8 @@ class Entropic:
     The entropy is the sum of H(f, xi) = xi^2 f/2 + (pi^2 beta^2/6) f^3. The minimiser is
     f_j = sqrt(max(2 (A + B xi_j) - xi_j^2, 0)) / (pi beta), the semicircle with two shifted parameters, found by a
     damped Newton iteration on the convex dual. A step is halved until the slope along it turns no more than half way:
-    where a node is about to enter the support the dual value is flat to rounding and could not tell. Where the support is thinner than the grid two nodes carry it exactly.
+    where a node is about to enter the support the dual value is flat to rounding and could not tell. Where the support
+    is thinner than the grid two nodes carry it exactly.
     """
 
     least = 4
