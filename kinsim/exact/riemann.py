@@ -4,22 +4,15 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Annotated
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from pydantic import Field
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from ..errors import InputError
 from ..model.cells import Cells
 from ..value import Number, value
-
-Array = NDArray[np.float64]
-Height = Annotated[Number, Field(ge=0)]
-
-GAUSS = 0.5 / math.sqrt(3.0)
-"""The two Gauss points lie so far from the middle of a unit interval; they integrate cubics exactly."""
+from .domain import Array, NonNegative, Positive, moment, places
+from .quadrature import averages
 
 
 @value
@@ -47,11 +40,11 @@ class Riemann:
         x0: Where they meet; x0 itself belongs to the left.
     """
 
-    h_left: Height
+    h_left: NonNegative
     u_left: Number
-    h_right: Height
+    h_right: NonNegative
     u_right: Number
-    beta: Annotated[Number, Field(gt=0)]
+    beta: Positive
     x0: Number = 0.0
 
     def __call__(self, x: ArrayLike, t: float) -> tuple[Array, Array]:
@@ -60,14 +53,12 @@ class Riemann:
         Raises:
             InputError: t is negative or not finite, or an x is not a number.
         """
-        places: Array = np.asarray(x, dtype=float)
-        if np.isnan(places).any():
-            raise InputError("Riemann: an x is not a number; give places")
-        piece = np.searchsorted(self._ends(t), places, side="left")
-        h, u = np.empty(places.shape), np.empty(places.shape)
+        there = places("Riemann", x)
+        piece = np.searchsorted(self._ends(t), there, side="left")
+        h, u = np.empty(there.shape), np.empty(there.shape)
         for number in range(5):
             inside = piece == number
-            h[inside], u[inside] = self._state(number, places[inside], t)
+            h[inside], u[inside] = self._state(number, there[inside], t)
         return h, u
 
     def averages(self, cells: Cells, t: float) -> tuple[Array, Array]:
@@ -76,18 +67,7 @@ class Riemann:
         Raises:
             InputError: t is negative or not finite.
         """
-        edges = cells.left + (cells.right - cells.left) * np.arange(cells.count + 1) / cells.count
-        ends = np.array([-np.inf, *self._ends(t), np.inf])
-        h, q = np.zeros(cells.count), np.zeros(cells.count)
-        for number in range(5):
-            begin = np.clip(edges[:-1], ends[number], ends[number + 1])
-            end = np.clip(edges[1:], ends[number], ends[number + 1])
-            share = (end - begin) / (edges[1:] - edges[:-1])
-            for point in (-GAUSS, GAUSS):
-                h_there, u_there = self._state(number, 0.5 * (begin + end) + point * (end - begin), t)
-                h += 0.5 * share * h_there
-                q += 0.5 * share * (h_there * u_there)
-        return h, q
+        return averages(lambda x: self(x, t), self._ends(t).tolist(), cells)
 
     @cached_property
     def middle(self) -> tuple[float, float]:
@@ -123,6 +103,15 @@ class Riemann:
             right = (left[1], left[1])
         return left[0], left[1], right[1], right[0]
 
+    @cached_property
+    def velocities(self) -> tuple[float, float]:
+        """Lowest and highest u on wet points, at all times t > 0; at a front on dry ground, its speed."""
+        h, u = self.middle
+        ends = (u, u) if h > 0.0 else (self.speeds[1], self.speeds[2])
+        left = (self.u_left, ends[0]) if self.h_left > 0.0 else ()
+        right = (ends[1], self.u_right) if self.h_right > 0.0 else ()
+        return min((*left, *right), default=0.0), max((*left, *right), default=0.0)
+
     def _wave(self, h_side: float, u_side: float, h: float, u: float, sign: float) -> tuple[float, float]:
         """Outer and inner speed of the wave that joins (h_side, u_side) to the middle (h, u)."""
         if h > h_side:
@@ -139,9 +128,7 @@ class Riemann:
 
     def _ends(self, t: float) -> Array:
         """Where the five pieces (left, left wave, middle, right wave, right) meet at `t`, ascending, shape (4,)."""
-        if not 0.0 <= t < math.inf:
-            raise InputError(f"Riemann: t = {t} is not a time at or after the start; take 0 <= t < infinity")
-        return np.maximum.accumulate(self.x0 + t * np.array(self.speeds))
+        return np.maximum.accumulate(self.x0 + moment("Riemann", t) * np.array(self.speeds))
 
     def _state(self, piece: int, x: Array, t: float) -> tuple[Array, Array]:
         """h, u of one piece, continued to all of `x`."""
