@@ -93,16 +93,41 @@ def average_side(h: float, u: float, beta: float, dxi: float, side: Array) -> No
     end = math.ceil(min(max((u + c) / dxi, 0.0), half)) if c > 0.0 else begin
     side[:begin] = 0.0
     side[end:] = 0.0
+    inside = side[begin:end]
+    for k in range(inside.size):
+        inside[k] = antiderivative(((begin + k + 1) * dxi - u) / c)
     scale = h / (math.pi * dxi)
     below = antiderivative((begin * dxi - u) / c)
-    for k in range(begin, end):
-        above = antiderivative(((k + 1) * dxi - u) / c)
-        side[k] = max(scale * (above - below), 0.0)
+    for k in range(inside.size):
+        above = inside[k]
+        inside[k] = max(scale * (above - below), 0.0)
         below = above
 
 
 @kernel
 def antiderivative(t: float) -> float:
-    """G(t) = t sqrt(1 - t^2) + arcsin t, clipped to [-1, 1]: G' = 2 sqrt(1 - t^2), G(1) = pi/2."""
-    t = min(max(t, -1.0), 1.0)
-    return t * math.sqrt((1.0 - t) * (1.0 + t)) + math.asin(t)
+    """G(t) = t sqrt(1 - t^2) + arcsin t, clipped to [-1, 1]: G' = 2 sqrt(1 - t^2), G(1) = pi/2.
+
+    Without branches, so that loops over it vectorise: arcsin x = x + x^3 P(x^2) for x <= 1/2, and above by
+    arcsin x = pi/2 - 2 arcsin sqrt((1 - x)/2). P interpolates at Chebyshev nodes, relative error 5e-18.
+    """
+    x = min(abs(t), 1.0)
+    far = x > 0.5
+    z = 0.5 * (1.0 - x) if far else x * x
+    s = math.sqrt(z) if far else x
+    p = 0.028757851367421566
+    p = p * z - 0.014851887071247204
+    p = p * z + 0.01740087944269402
+    p = p * z + 0.005457506718640358
+    p = p * z + 0.01032281435018578
+    p = p * z + 0.011479177415184906
+    p = p * z + 0.013971212973552933
+    p = p * z + 0.017352392720869973
+    p = p * z + 0.02237217294214989
+    p = p * z + 0.030381944138531247
+    p = p * z + 0.04464285714635543
+    p = p * z + 0.07499999999998433
+    p = p * z + 0.16666666666666669
+    near = s + s * z * p
+    angle = 0.5 * math.pi - 2.0 * near if far else near
+    return math.copysign(x * math.sqrt((1.0 - x) * (1.0 + x)) + angle, t)
