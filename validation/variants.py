@@ -159,11 +159,11 @@ def draw_equilibria(rows: list[Row]) -> Figure:
         )
         _each_equilibrium(lines, [row for row in rows if row.case is case], lambda row: row.off)
         lines.level(case.floor, "the closed form against itself after one ulp")
-        lines.finish()
+        lines.finish(room=2.8)
     for axes, k, word in ((mass, 0, "mass"), (second, 2, "second moment")):
         lines = Lines(axes, f"{word} of M, largest defect in both runs, flux scale", 1e-16, ticks)
         _each_equilibrium(lines, rows, lambda row, k=k: row.moments[k], orders=True, fitted=k > 0)
-        lines.finish()
+        lines.finish(room=2.8)
     return figure
 
 
@@ -204,7 +204,7 @@ def draw_forces(rows: list[Row]) -> Figure:
         )
         for number, (label, names) in enumerate(_alike(mine)):
             _line(lines, mine, names[0], lambda row: row.off, number, label)
-        lines.finish(gap=0.055, room=2.6)
+        lines.finish(gap=0.055, room=3.2)
     return figure
 
 

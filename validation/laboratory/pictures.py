@@ -40,8 +40,8 @@ class Lines:
         if value > self.low:
             self.axes.axhline(value, color="0.6", linewidth=1, zorder=0)
             self.axes.annotate(
-                label, (1, value), xycoords=("axes fraction", "data"), xytext=(-3, 3), textcoords="offset points",
-                fontsize=8, color="0.4", ha="right",
+                label, (1, value), xycoords=("axes fraction", "data"), xytext=(-3, -4), textcoords="offset points",
+                fontsize=8, color="0.4", ha="right", va="top",
             )  # fmt: skip
 
     def finish(self, gap: float = 0.062, room: float = 2.2) -> None:
