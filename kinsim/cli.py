@@ -142,6 +142,7 @@ def run(
     for picture in (plot, density):
         if picture:
             check_picture(picture)
+    _keep_apart(name, out, plot, density)
     dumps = read_dumps(dump or [])
     if density and not dumps:
         raise InputError("--density draws a dump; ask for one, for example --dump every=1000")
@@ -152,7 +153,7 @@ def run(
             file.clock,
             saved_every(file),
             force=force,
-            dumps=[*dumps, *_final_density(file)],
+            dumps=[*dumps, *_final_density(file, dumps)],
             causes=causes,
             progress=progress,
         )
@@ -263,18 +264,27 @@ def _read(name: str, settings: list[str] | None, method: MethodKind | None) -> S
     from .read import change, check, read_keys, take_method
 
     keys = read_keys(name)
+    change(keys, settings or [])
     if method:
         take_method(keys, method.value)
-    change(keys, settings or [])
     return check(keys, name)
 
 
-def _final_density(file: SceneFile) -> list[Dump]:
+def _keep_apart(*names: str | Path | None) -> None:
+    """No file is written over another one, nor over the scene itself."""
+    places = [Path(name).resolve() for name in names if name]
+    for place in places:
+        if places.count(place) > 1:
+            raise InputError(f"{place}: is named twice; each file needs a name of its own")
+
+
+def _final_density(file: SceneFile, dumps: list[Dump]) -> list[Dump]:
     """The density after the force of the first and the last step, where there is one on a grid."""
     from .kinetic.velocity import Fitted
     from .method import Kinetic
     from .watch.dump import Dump
 
     if isinstance(file.method, Kinetic) and not isinstance(file.method.velocity, Fitted):
-        return [Dump(every=2**62)]
+        taken = any(dump.name == "f" for dump in dumps)
+        return [Dump(name="f_end" if taken else "f", every=2**62)]
     return []

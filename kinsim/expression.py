@@ -77,6 +77,20 @@ def evaluate(formula: str, x: ArrayLike | None = None) -> Any:
     return np.array(values).reshape(places.shape)
 
 
+def check_names(formula: str) -> None:
+    """See that `formula` can be read and that x and the known names are all it uses.
+
+    Raises:
+        InputError: It does not.
+    """
+    if len(formula) > LONGEST:
+        raise InputError(f"formula of {len(formula)} characters; at most {LONGEST} are read")
+    known = {"x", *CONSTANTS, *FUNCTIONS}
+    for node in ast.walk(_parsed(formula)):
+        if isinstance(node, ast.Name) and node.id not in known:
+            raise InputError(f"{_short(formula)}: {node.id!r} is not defined; known names: {', '.join(sorted(known))}")
+
+
 @lru_cache(maxsize=64)
 def _parsed(formula: str) -> ast.AST:
     try:
@@ -95,7 +109,11 @@ def _at(formula: str, names: dict[str, float]) -> float:
         number = float(result)
     except KeyError as error:  # a comparison that is not arithmetic
         raise InputError(f"{_short(formula)}: operator {getattr(error.args[0], '__name__', '')} is not known") from None
-    except (InvalidExpression, RecursionError) as error:
+    except RecursionError:
+        raise InputError(f"{_short(formula)} is nested too deeply; write it in fewer terms") from None
+    except InvalidExpression as error:
+        if "<ast." in str(error):
+            raise InputError(f"{_short(formula)} uses an operator that formulas do not have") from None
         known = ", ".join(sorted([*names, *FUNCTIONS]))
         raise InputError(f"{_short(formula)}: {str(error) or type(error).__name__}; known names: {known}") from None
     except (ArithmeticError, ValueError, TypeError) as error:

@@ -66,6 +66,11 @@ class Kinetic:
                 raise ValueError(
                     f"equilibrium {self.equilibrium!r} needs at least {least} velocity cells, got {self.velocity.count}"
                 )
+            if self.velocity.beyond == "warn" and self.equilibrium in ("matched", "entropic"):
+                raise ValueError(
+                    f"equilibrium {self.equilibrium!r} puts all of M into the window, so that nothing beyond it can be "
+                    "left out; take beyond='stop', or cell averages"
+                )
 
     @property
     def twin(self) -> Macroscopic:

@@ -83,8 +83,10 @@ def built_in() -> dict[str, Path]:
 def read_keys(name_or_path: str | Path) -> dict[str, Any]:
     """The keys of a scene file as they stand there."""
     path = _find(name_or_path)
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise InputError(f"{name_or_path}: is no ordinary file; give the path of a scene file")
     try:
-        keys = tomllib.loads(path.read_text(encoding="utf-8"))
+        keys = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise InputError(f"{name_or_path}: cannot be read: {error.strerror}; give the path of a scene file") from None
     except UnicodeDecodeError:

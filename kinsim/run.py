@@ -124,11 +124,21 @@ class Run:
             "u": (("t", "x"), self.u, _attrs("velocity q/h, 0 where dry")),
         }
         coords = {"t": ("t", self.t, _attrs("time")), "x": ("x", self.x, _attrs("cell centre along the chute"))}
-        dumped = {name: _own_axes(name, array) for name, array in self.dumps.items()}
+        dumped = self._dumped()
         dataset = xarray.Dataset(state, coords=coords).merge(self.ledger)
         if self.causes is not None:
             dataset = dataset.merge(self.causes.rename(step="cause_step", sum="cause_sum", total="cause_total"))
         return dataset.assign(dumped).assign_attrs(self.provenance())
+
+    def _dumped(self) -> dict[str, xarray.DataArray]:
+        """The dumps on axes that go together: times of their own, x and xi shared unless a window cuts them."""
+        widest = max((array["xi"] for array in self.dumps.values()), key=len, default=None)
+        shared = {"x": self.x, "xi": widest}
+        named = {}
+        for name, array in self.dumps.items():
+            own = [axis for axis in array.coords if not _same(array[axis], shared.get(str(axis)))]
+            named[name] = array.rename({axis: f"{axis}_{name}" for axis in own})
+        return named
 
     def to_netcdf(self, path: str | Path) -> Path:
         """Write `to_xarray()` to a netCDF file, all of it or nothing.
@@ -146,13 +156,16 @@ class Run:
             "clock": describe(type(self.clock), self.clock),
             "kinsim_version": version("kinsim"),
         }
-        digest = hashlib.sha256("\n".join(described.values()).encode() + self.h[0].tobytes() + self.q[0].tobytes())
         packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "numba", "xarray", "h5netcdf"))
+        versions = f"kinsim {described['kinsim_version']}, Python {platform.python_version()}, {packages}"
+        digest = hashlib.sha256(
+            "\n".join([*described.values(), versions]).encode() + self.h[0].tobytes() + self.q[0].tobytes()
+        )
         return {
             "title": self.scene.title or "kinsim run",
             **described,
             "hash": digest.hexdigest(),
-            "versions": f"kinsim {described['kinsim_version']}, Python {platform.python_version()}, {packages}",
+            "versions": versions,
             "verdict": self.verdict.kind,
             "verdict_message": self.verdict.message,
             "steps": self.steps,
@@ -170,6 +183,5 @@ def _attrs(long_name: str) -> dict[str, str]:
     return {"long_name": long_name, "units": "1"}
 
 
-def _own_axes(name: str, array: xarray.DataArray) -> xarray.DataArray:
-    """The dump with its axes named after it, so that several fit into one dataset."""
-    return array.rename({axis: f"{axis}_{name}" for axis in array.coords})
+def _same(axis: xarray.DataArray, other: Any) -> bool:
+    return other is not None and np.array_equal(axis.to_numpy(), np.asarray(other))

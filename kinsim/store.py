@@ -19,7 +19,7 @@ def check_destination(path: str | Path) -> Path:
     """`path`, if a file can be put there.
 
     Raises:
-        InputError: Its folder does not exist or cannot be written, or it is a folder.
+        InputError: Its folder does not exist or cannot be written, or it is a folder or a device.
     """
     path = Path(path)
     folder = path.parent
@@ -27,6 +27,8 @@ def check_destination(path: str | Path) -> Path:
         raise InputError(f"{path}: the folder {folder} does not exist; create it first")
     if path.is_dir():
         raise InputError(f"{path}: is a folder; name a file in it")
+    if path.exists() and not path.is_file():
+        raise InputError(f"{path}: is a device or a pipe; name an ordinary file")
     try:
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:

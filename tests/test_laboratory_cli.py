@@ -60,6 +60,12 @@ def test_dumps_go_into_the_file_and_onto_the_picture(tmp_path: Path) -> None:
         (["--dump", "evry=3"], "evry: unknown key; did you mean every?"),
         (["--dump", "stage=middle"], "stage: should be"),
         (["--density", "f.png"], "--density draws a dump"),
+        (["--dump", "name=mass"], "name = 'mass' is taken"),
+        (["--dump", "x=50:60"], "no cell centre lies in its window of x"),
+        (["--dump", "x=1:0"], "x = 1:0 is no window"),
+        (["--dump", "xi=30:40", "--density", "f.png"], "is empty; widen its windows"),
+        (["--out", "run.nc", "--plot", "run.nc.png", "--density", "run.nc.png", "--dump", "every=9"], "is named twice"),
+        (["--set", 'method.velocity={kind="window",dxi=1e-9}'], "take dxi well above 1e-09"),
         (["--dump", "every=10", "--density", "f.png", "--cut", "99"], "no cut at x = 99"),
     ],
 )
@@ -72,6 +78,16 @@ def test_bad_requests_get_one_line(
     assert place in complaint
     assert complaint.count("\n") == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_a_dump_called_f_goes_with_the_last_density(tmp_path: Path) -> None:
+    """The command keeps the last density for its picture; it makes way for a dump of that name."""
+    file = tmp_path / "run.nc"
+    code, _, complaint = call("run", "silo", *SMALL, "--out", str(file), "--dump", "name=f,stage=transport,every=20")
+    assert (code, complaint) == (0, "")
+    with xarray.open_dataset(file, engine="h5netcdf") as kept:
+        assert kept["f"].dims == ("t_f", "x", "xi")
+        assert kept["f_end"].dims == ("t_f_end", "x", "xi")
 
 
 def test_densities_need_a_grid() -> None:
@@ -93,6 +109,8 @@ def test_seams_are_differences_of_the_same_step(tmp_path: Path) -> None:
     assert 1e-6 < half < 1e-3
     assert after <= 1e-3 / scene.cells.dx * 4 * half
     assert float(np.abs(measured["seam_projection"]).max()) > 0
+    with pytest.raises(InputError, match="seams need a second method"):
+        compare(scene, [method], Fixed(1e-3, 20), 20, seams=True)
     same = compare(scene, [method.twin, method.twin], Fixed(1e-3, 20), 20, seams=True)
     assert all(float(np.abs(same[f"seam_{stage}"]).max()) == 0.0 for stage in STAGES)
     assert plot_seams(measured, tmp_path / "seams.png").stat().st_size > 10_000

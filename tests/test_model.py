@@ -200,8 +200,8 @@ def test_bad_values_are_refused_in_one_line_that_names_the_place(make, named) ->
         ("x,h\n0,1\n1\n", "2 numbers"),
         ("x,h\n0,1\n1,tall\n", "2 numbers"),
         ("x,h\n0,1\n1,nan\n", "finite"),
-        ("x,h\n0,1\n0,2\n", "does not increase at row 2"),
-        ("x,h\n0,1\n1,1\n0.5,1\n", "does not increase at row 3"),
+        ("x,h\n0,1\n0,2\n", "does not increase at data row 2"),
+        ("x,h\n0,1\n1,1\n0.5,1\n", "does not increase at data row 3"),
     ],
 )
 def test_bad_tables_are_refused(text: str, named: str, tmp_path: Path) -> None:

@@ -80,7 +80,7 @@ BAD = {
     ),
     "table that does not increase": (
         'kind = "blocks"\nedges = [-1, 1]\nheights = [0.3, 2.3, 0.3]', 'kind = "table"\npath = "zigzag.csv"',
-        "zigzag.csv: x does not increase at row 3; sort the rows",
+        "zigzag.csv: x does not increase at data row 3; sort the rows",
     ),
 }  # fmt: skip
 """Text to replace in `GOOD`, its replacement, and what the message must hold."""

@@ -12,6 +12,7 @@ from kinsim import (
     Cells,
     Fixed,
     Kinetic,
+    Profile,
     Uniform,
     Window,
     simulate,
@@ -52,3 +53,27 @@ def test_a_window_too_small_warns_on_request_and_books_what_it_cut() -> None:
     assert warned.verdict.kind == "finished"
     assert "outside the window of 1.2 (take a bound of 1.4" in str(warned.verdict)
     assert warned.entries["window_loss"][-1] > 0.0
+
+
+def test_the_last_row_is_of_the_last_step_however_the_window_moves() -> None:
+    """A window that is made anew at the end does not empty f before it is booked."""
+    scene = replace(SCENES["sine"][0], cells=Cells(-3, 11, 28))
+    for steps in range(30, 60):
+        run = simulate(scene, Kinetic(1, Window(0.02, margin=1.0)), Fixed(4e-3, steps), 1000)
+        assert abs(run.entries["sampling_mass"][-1]) <= 1e-4
+
+
+@pytest.mark.parametrize("equilibrium", ["cell-average", "sampled"])
+def test_what_a_window_cuts_is_the_mass_beyond_it(equilibrium: EquilibriumName) -> None:
+    """One step of a flat layer at rest: h (1 - share of the semicircle inside), whatever the equilibrium samples."""
+    scene = replace(SCENES["silo"][0], cells=Cells(0, 1, 10), heap=Profile(np.ones(10)), boundary="periodic")
+    run = simulate(scene, Kinetic(1, Uniform(64, 0.5, "warn"), equilibrium), Fixed(1e-3, 1), 1)
+    a = 0.5 / np.sqrt(0.8)
+    share = 2 / np.pi * (a * np.sqrt(1 - a * a) + np.arcsin(a))
+    np.testing.assert_allclose(run.entries["window_loss"][-1], 1 - share, rtol=1e-12)
+
+
+def test_equilibria_that_refill_the_window_refuse_to_leave_anything_out() -> None:
+    for name in ("matched", "entropic"):
+        with pytest.raises(ValueError, match="puts all of M into the window"):
+            Kinetic(velocity=Uniform(16, 1.0, "warn"), equilibrium=name)

@@ -68,7 +68,7 @@ class Chapter:
 
     def claim(self, sentence: str, measured: float, *, low: float = -math.inf, high: float = math.inf) -> None:
         """`measured` lies in [low, high]."""
-        self.claims.append(Claim(sentence, float(measured), low, high))
+        self.claims.append(Claim(sentence, float(measured), float(low), float(high)))
 
     def figure(self, figure: Figure, name: str, caption: str) -> None:
         """Keep a figure as PNG under `name`."""

@@ -38,7 +38,7 @@ def derivative_upwind(f: Array, M: Array, J: Array, h: Array, dxi: float, out: A
     n = f.shape[1]
     lost = 0.0
     for i in range(f.shape[0]):
-        nu = J[i] / (h[i] * dxi) if h[i] > 0.0 else 0.0
+        nu = J[i] / h[i] / dxi if h[i] > 0.0 else 0.0
         for j in range(n):
             if nu >= 0.0:
                 behind = M[i, j - 1] if j > 0 else 0.0
@@ -56,7 +56,7 @@ def derivative_centred(f: Array, M: Array, J: Array, h: Array, dxi: float, out: 
     n = f.shape[1]
     lost = 0.0
     for i in range(f.shape[0]):
-        nu = J[i] / (h[i] * dxi) if h[i] > 0.0 else 0.0
+        nu = J[i] / h[i] / dxi if h[i] > 0.0 else 0.0
         for j in range(n):
             below = M[i, j - 1] if j > 0 else 0.0
             above = M[i, j + 1] if j < n - 1 else 0.0

@@ -23,7 +23,7 @@ class ShiftExact:
 
 
 class ShiftLinear:
-    """Shift (23) by a conservative linear remap; exact in mass and momentum, never negative."""
+    """Shift (23) by a conservative linear remap; exact in mass and momentum, keeps f >= 0."""
 
     derivative = False
 
@@ -48,7 +48,7 @@ class ShiftPFC:
 @kernel
 def split_shift(J: float, h: float, dxi: float, n: int) -> tuple[int, float]:
     """|J|/h in velocity cells as whole cells and a fraction; n cells when everything leaves, none where it is dry."""
-    distance = abs(J) / (h * dxi) if h > 0.0 else 0.0
+    distance = abs(J) / h / dxi if h > 0.0 else 0.0
     if not distance < n:
         return n, 0.0
     whole = int(distance)

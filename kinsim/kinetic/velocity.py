@@ -10,9 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from ..errors import InputError
 from ..value import Number, Whole, kind, value
 
 Beyond = Literal["stop", "warn"]
+
+WIDEST = 1e6
+"""Velocity cells on one side beyond which a window is refused."""
 
 
 @value
@@ -73,7 +77,12 @@ class Window:
 
     def grid(self, reach: float) -> Grid:
         """A window around velocities up to `reach`."""
-        return Grid(2 * max(math.ceil(self.margin * reach / self.dxi), 2), self.dxi)
+        half = max(self.margin * reach / self.dxi, 2.0)
+        if not half <= WIDEST:
+            raise InputError(
+                f"velocity: a window of {2 * half:.3g} cells is asked for; take dxi well above {self.dxi:g}"
+            )
+        return Grid(2 * math.ceil(half), self.dxi)
 
     def fits(self, grid: Grid, reach: float) -> bool:
         """Whether `grid` still serves."""

@@ -8,6 +8,7 @@ from ..balance.interface import Faces
 from ..balance.stages import Array, Stages, fastest
 from ..scene import Scene
 from .equilibrium import Equilibrium, Status
+from .equilibrium.averages import mass_outside
 from .force import Force
 from .transport import half_sums, outermost, transport
 from .velocity import Grid, Uniform, Window
@@ -113,7 +114,7 @@ class Density:
 
     def cut(self, now: Stages) -> float:
         """The mass of M outside the window, per dx."""
-        return float(np.maximum(now.h[1:-1] - self.grid.dxi * self.M[1:-1].sum(axis=1), 0.0).sum())
+        return mass_outside(now.h[1:-1], now.u[1:-1], self._beta, self.grid.bound)
 
     def on_grid(self, grid: Grid, now: Stages) -> Array:
         """M of the cells, shape (nx, grid.count), on another grid."""

@@ -54,10 +54,14 @@ def compare(
     """
     if not methods:
         raise InputError("compare: no methods; give a reference and what is to be measured against it")
+    if seams and len(methods) < 2:
+        raise InputError("compare: seams need a second method; give a reference and what it is measured against")
     runs: list[Run] = []
     for number, method in enumerate(methods):
         part = _part(progress, number, len(methods)) if progress else None
         runs.append(simulate(scene, method, _after(runs, clock), save_every, force=force, progress=part))
+        if runs[-1].verdict.kind == "interrupted":
+            raise KeyboardInterrupt
     apart = _differences(runs)
     return apart.merge(_seams(runs, save_every)) if seams else apart
 

@@ -32,4 +32,4 @@ class Cells:
     def x(self) -> NDArray[np.float64]:
         """Cell centres, shape (count,); mirrored ends give bitwise mirrored centres."""
         i = np.arange(self.count) + 0.5
-        return (self.left * (self.count - i) + self.right * i) / self.count
+        return self.left * ((self.count - i) / self.count) + self.right * (i / self.count)

@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, Field, GetPydanticSchema
 from pydantic_core import core_schema
 
 from ..errors import InputError
-from ..expression import evaluate
+from ..expression import check_names, evaluate
 from ..value import Number, kind, value
 
 Array = NDArray[np.float64]
@@ -76,8 +76,8 @@ class Expression:
     kind: Literal["expression"] = kind("expression")
 
     def __post_init__(self) -> None:
-        evaluate(self.h, np.array([0.1234]))
-        evaluate(self.u, np.array([0.1234]))
+        check_names(self.h)
+        check_names(self.u)
 
     def __call__(self, x: Array) -> State:
         """h, u at `x`."""
@@ -100,8 +100,10 @@ class Table:
         return np.interp(x, places, h), np.interp(x, places, u)
 
     def _columns(self) -> tuple[Array, Array, Array]:
+        if self.path.exists() and not self.path.is_file():
+            raise InputError(f"table {self.path}: is no ordinary file; give a CSV file")
         try:
-            with self.path.open(newline="", encoding="utf-8") as file:
+            with self.path.open(newline="", encoding="utf-8-sig") as file:
                 rows = list(csv.reader(line for line in file if line.strip() and not line.lstrip().startswith("#")))
         except (OSError, UnicodeDecodeError, csv.Error) as error:
             reason = getattr(error, "strerror", None) or "it is not a CSV file"
@@ -121,7 +123,7 @@ class Table:
             raise InputError(f"table {self.path}: needs at least two rows of finite numbers")
         falls = np.flatnonzero(np.diff(columns[:, 0]) <= 0)
         if falls.size:
-            raise InputError(f"table {self.path}: x does not increase at row {falls[0] + 2}; sort the rows")
+            raise InputError(f"table {self.path}: x does not increase at data row {falls[0] + 2}; sort the rows")
         return columns[:, 0], columns[:, 1], columns[:, 2] if len(header) == 3 else np.zeros(len(columns))
 
 
@@ -158,10 +160,9 @@ class Profile:
     def __call__(self, x: Array) -> State:
         """h, u at `x`."""
         u = np.zeros_like(self.h) if self.u is None else self.u
+        of_u = "" if self.u is None else f" and u {u.size}"
         if self.h.shape != x.shape or u.shape != x.shape:
-            raise InputError(
-                f"profile: h has {self.h.size} and u {u.size} values for {x.size} cells; give one per cell"
-            )
+            raise InputError(f"profile: h has {self.h.size} values{of_u} for {x.size} cells; give one per cell")
         return self.h.copy(), u.copy()
 
     def __eq__(self, other: object) -> bool:

@@ -36,6 +36,8 @@ def plot_density(run: Run, path: str | Path, name: str = "f", places: Sequence[f
         raise InputError(f"no dump {name!r} in this run; there are: {', '.join(run.dumps) or 'none'}")
     dump = run.dumps[name]
     x = dump["x"].to_numpy()
+    if not dump.size:
+        raise InputError(f"the dump {name!r} is empty; widen its windows")
     for place in places:
         if not x[0] - run.scene.cells.dx <= place <= x[-1] + run.scene.cells.dx:
             raise InputError(f"no cut at x = {place:g}; the dump {name!r} reaches from {x[0]:g} to {x[-1]:g}")

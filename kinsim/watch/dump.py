@@ -8,14 +8,19 @@ import numpy as np
 from pydantic import Field
 
 from ..balance.stages import Array
+from ..errors import InputError
 from ..kinetic.velocity import Grid
 from ..value import Number, Whole, value
+from .ledger import COLUMNS, DENSITY_COLUMNS
 
 if TYPE_CHECKING:
     import xarray
 
     from ..kinetic.wing import Density
     from ..scene import Scene
+
+TAKEN = {"t", "x", "xi", "h", "q", "u", "stage", "quantity", *COLUMNS, *DENSITY_COLUMNS}
+"""Names of other parts of a run."""
 
 Stage = Literal["equilibrium", "transport", "force"]
 
@@ -28,7 +33,7 @@ LONG_NAMES = {
 
 @value
 class Dump:
-    """The density at one stage of the first, of every `every`-th and of the last step of a kinetic run.
+    """The density at one stage of the first, every `every`-th and last step of a kinetic run that goes to its end.
 
     Attributes:
         name: Its name in the run and in the file.
@@ -43,6 +48,13 @@ class Dump:
     x: tuple[Number, Number] | None = None
     xi: tuple[Number, Number] | None = None
 
+    def __post_init__(self) -> None:
+        if self.name in TAKEN or self.name.startswith("cause_"):
+            raise ValueError(f"name = {self.name!r} is taken by another part of a run; choose another, for example f")
+        for axis, window in (("x", self.x), ("xi", self.xi)):
+            if window and not window[0] < window[1]:
+                raise ValueError(f"{axis} = {window[0]:g}:{window[1]:g} is no window; write low:high")
+
 
 class Recorder:
     """Collects one dump during a run."""
@@ -52,6 +64,8 @@ class Recorder:
         self._density = density
         self._cells = _inside(scene.x, dump.x)
         self._x = scene.x[self._cells]
+        if not self._x.size:
+            raise InputError(f"dump {dump.name!r}: no cell centre lies in its window of x; widen it")
         self._times: list[float] = []
         self._rows: list[Array] = []
         self._offsets: list[Array] = []

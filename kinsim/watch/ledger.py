@@ -10,6 +10,7 @@ import numpy as np
 from ..balance.stages import Array
 from ..kernel import kernel
 from ..kinetic.equilibrium import Status
+from ..kinetic.equilibrium.status import FALLBACKS, MASS_ONLY, TWO_MOMENTS
 from ..kinetic.shift import shift_linear
 from ..kinetic.wing import Density
 from ..scene import Scene
@@ -35,6 +36,8 @@ DENSITY_COLUMNS = {
     "f_distance": "integral of |f - M| over x and xi, M of the new state",
     "f_tail": "mass of f where M of the new state is zero",
     "fallbacks": "cells and faces times steps so far in which the equilibrium fell back to few nodes",
+    "two_moments": "those of them that kept mass and momentum only",
+    "mass_only": "those of them that kept the mass only",
     "iterations": "most iterations of the equilibrium in a cell or face since the row before",
     "residual": "largest relative defect that the equilibrium left since the row before",
 }
@@ -59,7 +62,7 @@ class Ledger:
         self._scene, self._stepper = scene, stepper
         self._rows: list[dict[str, float]] = []
         self._booked = Books(0.0, 0.0, 0.0, 0.0)
-        self._fallbacks = 0
+        self._fallbacks = np.zeros(len(FALLBACKS), dtype=np.int64)
         self.least_height = math.inf
         self.least_density = 0.0
         self.worst_courant = 0.0
@@ -99,7 +102,7 @@ class Ledger:
             row |= dict.fromkeys(DENSITY_COLUMNS, 0.0)
             if started:
                 row |= departure(density, h, q, dx) if f_is_of_state else dict.fromkeys(DEPARTURE, math.nan)
-                row |= {"f_min": self._f_min, "fallbacks": self._fallbacks}
+                row |= {"f_min": self._f_min, **self._fallen()}
                 row |= {"iterations": self._iterations, "residual": self._residual}
         self._rows.append(row)
         self._forget()
@@ -109,9 +112,18 @@ class Ledger:
         return {name: np.array([row[name] for row in self._rows]) for name in self._rows[0]}
 
     def _note_status(self, status: Status, rows: slice) -> None:
-        self._fallbacks += int(np.count_nonzero(status.fallback[rows]))
+        self._fallbacks += np.bincount(status.fallback[rows], minlength=len(FALLBACKS))
         self._iterations = max(self._iterations, int(status.iterations.max()))
         self._residual = max(self._residual, float(status.residual.max()))
+
+    def _fallen(self) -> dict[str, float]:
+        """How often so far an equilibrium fell back, at all and to less than three moments."""
+        counts = self._fallbacks
+        return {
+            "fallbacks": float(counts[1:].sum()),
+            "two_moments": float(counts[TWO_MOMENTS]),
+            "mass_only": float(counts[MASS_ONLY]),
+        }
 
     def _forget(self) -> None:
         self._h_min = self._f_min = math.inf

@@ -131,3 +131,15 @@ def antiderivative(t: float) -> float:
     near = s + s * z * p
     angle = 0.5 * math.pi - 2.0 * near if far else near
     return math.copysign(x * math.sqrt((1.0 - x) * (1.0 + x)) + angle, t)
+
+
+@kernel
+def mass_outside(h: Array, u: Array, beta: float, bound: float) -> float:
+    """The mass of M beyond |xi| = bound, summed over the cells."""
+    outside = 0.0
+    for i in range(h.size):
+        if h[i] > 0.0:
+            c = math.sqrt(2.0 * beta * h[i])
+            inside = antiderivative((bound - u[i]) / c) - antiderivative((-bound - u[i]) / c)
+            outside += h[i] * max(1.0 - inside / math.pi, 0.0)
+    return outside

@@ -164,7 +164,7 @@ def two_nodes_are_optimal(h: float, u: float, beta: float, dxi: float, half: int
 
     With f on the nodes j and j + 1 only, 2 (A + B xi) = xi^2 + (pi beta f)^2 there; elsewhere it may not exceed xi^2.
     """
-    low = math.floor(u / dxi - 0.5)
+    low = math.floor(min(u / dxi - 0.5, float(half)))
     if low + 1 >= half:
         return False
     x0, x1 = (low + 0.5) * dxi, (low + 1.5) * dxi

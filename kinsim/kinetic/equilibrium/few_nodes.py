@@ -30,7 +30,8 @@ def few_nodes(h: float, u: float, beta: float, dxi: float, want_three: bool, P: 
     half = P.size
     P[:] = 0.0
     N[:] = 0.0
-    low = math.floor(u / dxi - 0.5)
+    place = min(u / dxi - 0.5, float(half))
+    low = math.floor(place)
     if low + 1 >= half:
         P[half - 1] = h / dxi
         return MASS_ONLY

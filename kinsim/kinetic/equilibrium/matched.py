@@ -108,4 +108,10 @@ def matched_sides(h: float, u: float, beta: float, dxi: float, P: Array, N: Arra
         if not lowest >= 0.0:
             break
     fell = few_nodes(h, u, beta, dxi, True, P, N)
-    return 3, 0.0, fell
+    s0, s1, s2 = 0.0, 0.0, 0.0
+    for k in range(P.size):
+        yp, yn = ((k + 0.5) * dxi - u) / c, (-(k + 0.5) * dxi - u) / c
+        s0 += weight * (P[k] + N[k])
+        s1 += weight * (P[k] * yp + N[k] * yn)
+        s2 += weight * (P[k] * yp * yp + N[k] * yn * yn)
+    return sweep, max(abs(1.0 - s0), abs(s1), abs(0.25 - s2)), fell
