@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..balance.stages import Array
+from ..errors import InputError
+from ..exact.of_scene import exact_of
 from ..run import Run
 from ..watch.dump import LONG_NAMES
 from .picture import save
@@ -48,15 +50,30 @@ def _curves(run: Run, heights: Any, velocities: Any) -> None:
 
     rows = telling_rows(run.h, CURVES)
     colours = colormaps["viridis_r"](np.linspace(0.1, 1.0, len(rows)))
+    exact = exact_of(run.scene)
     for row, colour in zip(rows, colours, strict=True):
         heights.plot(run.x, run.h[row], color=colour, label=f"t = {run.t[row]:.3g}")
         velocities.plot(run.x, run.u[row], color=colour)
+        if exact is not None and row:
+            _overlay(exact, run, row, heights, velocities, "exact" if row == rows[-1] else None)
     heights.set_ylabel("height h")
     heights.set_ylim(min(0.0, 1.05 * run.h.min()), 1.05 * run.h.max() or 1.0)
     velocities.set_ylabel("velocity u = q/h")
     for axes in (heights, velocities):
         axes.grid(alpha=0.3)
-    heights.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(rows), frameon=False, columnspacing=1.2)
+    entries = len(heights.get_legend_handles_labels()[1])
+    heights.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=entries, frameon=False, columnspacing=1.2)
+
+
+def _overlay(exact: Any, run: Run, row: int, heights: Any, velocities: Any, label: str | None) -> None:
+    """The exact solution at a saved time, where it holds."""
+    fine = np.linspace(run.scene.cells.left, run.scene.cells.right, 2001)
+    try:
+        h, u = exact(fine, float(run.t[row]))
+    except InputError:
+        return
+    for axes, values in ((heights, h), (velocities, u)):
+        axes.plot(fine, values, color="black", linewidth=0.8, linestyle="--", label=label if axes is heights else None)
 
 
 def telling_rows(h: Array, count: int) -> list[int]:

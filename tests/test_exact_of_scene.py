@@ -1,0 +1,43 @@
+"""Which scenes have an exact solution, and that it lies on their pictures."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from kinsim import Blocks, ConstantSlope, Coulomb, Fixed, Macroscopic, load_scene, simulate
+from kinsim.exact import AcceleratedRiemann, Riemann
+from kinsim.exact.of_scene import exact_of
+from kinsim.plot import draw
+
+
+def test_two_blocks_have_one() -> None:
+    scene, _, _ = load_scene("riemann")
+    found = exact_of(scene)
+    assert found == Riemann(1.0, 0.0, 0.5, 0.0, beta=0.4, x0=0.0)
+    np.testing.assert_array_equal(found(scene.x, 0.0)[0], scene.initial()[0])
+    steep = replace(scene, chute=ConstantSlope(0.5), friction=Coulomb(0.3))
+    assert isinstance(exact_of(steep), AcceleratedRiemann)
+
+
+def test_others_have_none() -> None:
+    scene, _, _ = load_scene("riemann")
+    assert exact_of(load_scene("silo")[0]) is None
+    assert exact_of(load_scene("sine")[0]) is None
+    assert exact_of(replace(scene, friction=Coulomb(0.3))) is None
+    assert exact_of(replace(scene, heap=Blocks((-1, 1), (1, 2, 1)))) is None
+
+
+def test_it_lies_on_the_picture() -> None:
+    """One dashed curve for each later time, close to the run; none where there is no solution."""
+    scene, _, _ = load_scene("riemann")
+    heights = draw(simulate(scene, Macroscopic(1), Fixed(1e-2, 200), 20)).axes[0]
+    dashed = [line for line in heights.lines if line.get_linestyle() == "--"]
+    assert len(dashed) == len(heights.lines) // 2
+    assert "exact" in [text.get_text() for text in heights.get_legend().get_texts()]
+    run, exact = heights.lines[-2], dashed[-1]
+    off = np.abs(run.get_ydata() - np.interp(run.get_xdata(), exact.get_xdata(), exact.get_ydata()))
+    assert off.mean() <= 0.01
+    silo = draw(simulate(load_scene("silo")[0], Macroscopic(1), Fixed(1e-3, 20), 20)).axes[0]
+    assert not [line for line in silo.lines if line.get_linestyle() == "--"]
