@@ -48,7 +48,10 @@ def validate(
     Returns:
         One record per script: name, story, seconds, figures, tables, claims (sentence, measured, bound, holds), error.
     """
-    out.mkdir(parents=True, exist_ok=True)
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(f"{out}: no folder can be made there ({error.strerror}); name another") from None
     records = []
     for number, script in enumerate(scripts):
         if told:
@@ -108,4 +111,6 @@ def _run(script: Path, out: Path, full: bool) -> dict[str, Any]:
         empty: dict[str, Any] = {"figures": [], "tables": [], "claims": []}
         return {"name": script.stem, "story": script.stem, "full": full, "seconds": 0.0, "error": error, **empty}
     record: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
-    return record | {"error": "" if record["claims"] else "makes no claim"}
+    foreseen = int(not (record["claims"] and all(claim["holds"] for claim in record["claims"])))
+    error = "" if record["claims"] else "makes no claim"
+    return record | {"error": error if done.returncode == foreseen else f"ended with exit code {done.returncode}"}

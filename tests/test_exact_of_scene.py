@@ -26,6 +26,8 @@ def test_others_have_none() -> None:
     assert exact_of(load_scene("silo")[0]) is None
     assert exact_of(load_scene("sine")[0]) is None
     assert exact_of(replace(scene, friction=Coulomb(0.3))) is None
+    assert exact_of(replace(scene, boundary="periodic")) is None
+    assert exact_of(replace(scene, boundary=("open", "wall"))) is None
     assert exact_of(replace(scene, heap=Blocks((-1, 1), (1, 2, 1)))) is None
 
 

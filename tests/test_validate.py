@@ -77,9 +77,21 @@ def test_a_script_that_breaks_or_claims_nothing_turns_the_report_red(text: str, 
     assert records[0]["error"]
 
 
+def test_an_exit_code_that_does_not_fit_turns_the_report_red(checkout: Path) -> None:
+    script = SCRIPT.format(bound=2.0).replace(
+        "run(main, __doc__)", "try:\n    run(main, __doc__)\nfinally:\n    raise SystemExit(9)"
+    )
+    (checkout / "odd.py").write_text(script)
+    records = validate(find_scripts(["odd"]), Path("out"))
+    assert not holds(records)
+    assert records[0]["error"] == "ended with exit code 9"
+
+
 def test_bad_requests_get_one_line(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     done = CliRunner().invoke(app, ["validate", "--only", "godo"])
     assert (done.exit_code, done.stderr.count("\n")) == (2, 1)
     assert "there are: good" in done.stderr
+    done = CliRunner().invoke(app, ["validate", "--only", "good", "--out", "validation/good.py/x"])
+    assert (done.exit_code, done.stderr.count("\n")) == (2, 1)
     monkeypatch.chdir(checkout)
     assert "run this in a checkout" in CliRunner().invoke(app, ["validate"]).stderr

@@ -68,6 +68,8 @@ class Chapter:
 
     def claim(self, sentence: str, measured: float, *, low: float = -math.inf, high: float = math.inf) -> None:
         """`measured` lies in [low, high]."""
+        if math.isinf(low) and math.isinf(high):
+            raise ValueError(f"{sentence}: a claim without a bound cannot fail; give it one")
         self.claims.append(Claim(sentence, float(measured), float(low), float(high)))
 
     def figure(self, figure: Figure, name: str, caption: str) -> None:

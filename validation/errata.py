@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from scipy.integrate import quad
 
 from kinsim import crosscheck, printed
+from kinsim.balance.impulse import acceleration
 from kinsim.exact import Riemann
 
 Array = NDArray[np.float64]
@@ -134,7 +135,8 @@ def sign_of_g() -> float:
     """Largest |g(q) - g(u)| over h > 0."""
     dice = np.random.default_rng(9)
     h, u = 10.0 ** dice.uniform(-12, 1, 10_000), dice.normal(size=10_000)
-    return float(np.abs(np.sign(h * u) - np.sign(u)).max())
+    s, R = 0.2, 0.3
+    return max(abs(acceleration(q, s, R) - (s - np.sign(v) * R)) for q, v in zip(h * u, u, strict=True))
 
 
 def hyperbolic() -> tuple[float, float]:

@@ -11,10 +11,10 @@ from .riemann import Riemann
 def exact_of(scene: Scene) -> Riemann | AcceleratedRiemann | None:
     """Of two blocks that meet: the Riemann solution, in the accelerated frame where gravity outweighs friction.
 
-    It knows no ends: it holds until the first wave has come to one.
+    It knows no ends, and so only open ones will do.
     """
     heap = scene.heap
-    if not isinstance(heap, Blocks) or len(heap.edges) != 1:
+    if not isinstance(heap, Blocks) or len(heap.edges) != 1 or scene.boundary != "open":
         return None
     frame = Riemann(heap.heights[0], 0.0, heap.heights[1], 0.0, beta=scene.beta, x0=heap.edges[0])
     if not scene.forced:
