@@ -16,8 +16,8 @@ from kinsim.kinetic.fitted import gauss_jacobi
 def kernels() -> list[object]:
     """Every kernel of the kinetic and macroscopic wings, found by its dispatcher."""
     names = ("kinetic.transport", "kinetic.shift", "kinetic.derivative", "kinetic.fitted", "macroscopic.half_moments",
-             "balance.interface", "balance.impulse", "balance.update", "balance.stages", "balance.schemes",
-             "watch.ledger", "watch.causes")  # fmt: skip
+             "balance.interface", "balance.sides", "balance.impulse", "balance.update", "balance.stages",
+             "balance.schemes", "watch.ledger", "watch.causes")  # fmt: skip
     modules = [import_module(f"kinsim.{name}") for name in names]
     modules += [
         import_module(f"kinsim.kinetic.equilibrium.{m}")

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..balance.interface import Faces
+from ..balance.sides import both_sides
 from ..balance.stages import Stages, fastest
 from ..kernel import kernel
 from ..scene import Scene
@@ -48,13 +49,7 @@ def half_moments_fitted(h: float, u: float, beta: float, s: Array, W: Array) -> 
         m1 += root
         m2 += root * (1.0 - s[j])
     scale = 2.0 / math.pi * h * c * b * b * math.sqrt(b)
-    m1, m2 = scale * m1, scale * c * b * m2
-    total1, total2 = h * u, h * u * u + 0.5 * beta * h * h
-    if u == 0.0:
-        return m1, 0.5 * total2, -m1, 0.5 * total2
-    if u > 0.0:
-        return total1 + m1, total2 - m2, -m1, m2
-    return m1, m2, total1 - m1, total2 - m2
+    return both_sides(h, u, beta, scale * m1, scale * c * b * m2)
 
 
 @kernel

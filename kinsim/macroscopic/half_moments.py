@@ -17,6 +17,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from ..balance.sides import both_sides
 from ..kernel import kernel
 
 Array = NDArray[np.float64]
@@ -46,13 +47,7 @@ def half_moments_closed(h: float, u: float, beta: float) -> tuple[float, float, 
     if not h > 0.0:
         return 0.0, 0.0, 0.0, 0.0
     m1, m2 = small_side(h, abs(u), beta)
-    total1 = h * u
-    total2 = h * u * u + 0.5 * beta * h * h
-    if u == 0.0:
-        return m1, 0.5 * total2, -m1, 0.5 * total2
-    if u > 0.0:
-        return total1 + m1, total2 - m2, -m1, m2
-    return m1, m2, total1 - m1, total2 - m2
+    return both_sides(h, u, beta, m1, m2)
 
 
 @kernel
