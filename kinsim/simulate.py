@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from .balance.stages import Array
-from .clock import AnyClock, Courant, Fixed
+from .clock import AnyClock, Courant, Fixed, Replay
 from .errors import InputError
 from .interrupt import Deferred
 from .kinetic.velocity import Uniform, Window
@@ -64,8 +64,7 @@ def simulate(
     Raises:
         InputError: The first step would break the CFL bound, or the request makes no sense.
     """
-    if save_every < 1:
-        raise InputError(f"save_every = {save_every} is below 1; take 1 to keep every step")
+    _check(scene, method, clock, save_every)
     if isinstance(method, Kinetic) and method.unbounded:
         method = method.within(find_bound(scene, method, clock, force))
     loop = _Loop(scene, method, clock, save_every, force)
@@ -77,6 +76,22 @@ def simulate(
     except KeyboardInterrupt:
         verdict = loop.verdict("interrupted", "interrupted")
     return loop.finish(verdict, time.perf_counter() - began)
+
+
+def _check(scene: Scene, method: Kinetic | Macroscopic, clock: AnyClock, save_every: int) -> None:
+    """The three that meet here are what they should be."""
+    for name, given, kinds in (
+        ("scene", scene, (Scene,)),
+        ("method", method, (Kinetic, Macroscopic)),
+        ("clock", clock, (Fixed, Courant, Replay)),
+    ):
+        if not isinstance(given, kinds):
+            wanted = " or ".join(kind.__name__ for kind in kinds)
+            raise InputError(f"simulate: {name} is of type {type(given).__name__}; give a {wanted}")
+    if not isinstance(save_every, (int, np.integer)):
+        raise InputError(f"simulate: save_every = {save_every!r} is no number of steps; take a whole one, 1 or more")
+    if save_every < 1:
+        raise InputError(f"save_every = {save_every} is below 1; take 1 to keep every step")
 
 
 def find_bound(scene: Scene, method: Kinetic, clock: AnyClock, force: bool = False) -> float:

@@ -243,3 +243,13 @@ def test_a_pipe_gets_no_colours():
     assert "\x1b" not in answer.stdout + answer.stderr
     assert answer.stderr == ""
     assert max(map(len, answer.stdout.splitlines())) <= 80
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+@pytest.mark.parametrize("words", [["scenes"], ["--help"], ["check", "silo"]])
+def test_an_output_that_is_full_is_told_in_one_line(words):
+    with open("/dev/full", "w") as full:
+        command = [sys.executable, "-m", "kinsim", *words]
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (1, 1)
+    assert "No space left on device" in done.stderr

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import math
+import re
 import subprocess
 import sys
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -234,6 +236,22 @@ def test_bad_requests_are_refused() -> None:
     for dt in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(kinsim.InputError, match="step: dt"):
             step(PARABOLA, Macroscopic(3), h, h, dt)
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ((PARABOLA, Macroscopic(3), 0.5), "simulate: clock is of type float; give a Fixed or Courant or Replay"),
+        ((PARABOLA, 3, Fixed(1e-3, 3)), "simulate: method is of type int; give a Kinetic or Macroscopic"),
+        ((PARABOLA, Macroscopic, Fixed(1e-3, 3)), "method is of type type"),
+        (("parabola", Macroscopic(3), Fixed(1e-3, 3)), "simulate: scene is of type str; give a Scene"),
+        ((PARABOLA, Macroscopic(3), Fixed(1e-3, 3), 2.5), "save_every = 2.5 is no number of steps"),
+        ((PARABOLA, Macroscopic(3), Fixed(1e-3, 3), None), "save_every = None is no number of steps"),
+    ],
+)
+def test_each_argument_is_what_it_should_be(given: tuple[Any, ...], line: str) -> None:
+    with pytest.raises(kinsim.InputError, match=re.escape(line)):
+        simulate(*given)
 
 
 def test_step_leaves_its_arguments_alone() -> None:
