@@ -165,8 +165,10 @@ def validation_report(records: Sequence[Mapping[str, Any]], out: Path) -> None:
             mark = "[green]holds[/]" if claim["holds"] else "[red]fails[/]"
             measured = f"{claim['measured']:.4g}"
             table.add_row(escape(claim["sentence"]), measured, escape(claim["bound"]), mark, record["name"])
-        if record["error"]:
-            table.add_row(f"[red]{escape(record['error'])}[/]", "", "", "[red]fails[/]", record["name"])
     console = Console()
     console.print(table)
+    for record in records:
+        if record["error"]:
+            line = f"[red]broke:[/] {record['name']}: {escape(record['error'])}"
+            console.print(line, highlight=False, soft_wrap=True)
     console.print(f"report: {out / 'index.html'}", highlight=False, soft_wrap=True)

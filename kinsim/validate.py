@@ -46,7 +46,8 @@ def validate(
         told: Called with the name of the script that runs now and the share that is done.
 
     Returns:
-        One record per script: name, story, seconds, figures, tables, claims (sentence, measured, bound, holds), error.
+        One record per script: name, story, seconds, figures, tables, claims (sentence, measured, bound, holds), error
+        (a line, empty if it ended well) and what it then printed as `trace`.
     """
     try:
         out.mkdir(parents=True, exist_ok=True)
@@ -96,9 +97,15 @@ def claims_table(records: Sequence[dict[str, Any]]) -> str:
     for record in records:
         for claim in record["claims"]:
             mark = "" if claim["holds"] else " **fails**"
-            sentence = claim["sentence"].replace("|", "\\|")
-            lines.append(f"| {sentence} | {claim['measured']:.3g}{mark} | {claim['bound']} | `{record['name']}` |")
+            measured = f"{claim['measured']:.3g}{mark}"
+            lines.append(f"| {_cell(claim['sentence'])} | {measured} | {claim['bound']} | `{record['name']}` |")
+        if record.get("error"):
+            lines.append(f"| **broke**: {_cell(record['error'])} | | | `{record['name']}` |")
     return "\n".join(lines) + "\n"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
 
 
 def _run(script: Path, out: Path, full: bool) -> dict[str, Any]:
@@ -106,11 +113,22 @@ def _run(script: Path, out: Path, full: bool) -> dict[str, Any]:
     kept.unlink(missing_ok=True)
     command = [sys.executable, str(script), "--out", str(out), *(["--full"] if full else [])]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    if not kept.exists():
-        error = done.stderr.strip().split("\n")[-1] or f"exit code {done.returncode}"
-        empty: dict[str, Any] = {"figures": [], "tables": [], "claims": []}
-        return {"name": script.stem, "story": script.stem, "full": full, "seconds": 0.0, "error": error, **empty}
-    record: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
-    foreseen = int(not (record["claims"] and all(claim["holds"] for claim in record["claims"])))
-    error = "" if record["claims"] else "makes no claim"
-    return record | {"error": error if done.returncode == foreseen else f"ended with exit code {done.returncode}"}
+    error = f"ended with exit code {done.returncode}"
+    if kept.exists():
+        record: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
+        if done.returncode == int(not (record["claims"] and all(claim["holds"] for claim in record["claims"]))):
+            error = "" if record["claims"] else "makes no claim"
+    else:
+        record = {"name": script.stem, "story": script.stem, "full": full, "seconds": 0.0}
+        record |= {"figures": [], "tables": [], "claims": []}
+        if done.returncode > 0:  # below 0 a signal ended it, and it had no time for a word of its own
+            error = last_error(done.stderr) or error
+    return record | {"error": error, "trace": done.stderr.strip() if error else ""}
+
+
+def last_error(told: str) -> str:
+    """The first line of the exception that ends a traceback, which may go on for more lines; else the last line."""
+    lines = told.rstrip().split("\n")
+    frames = [number for number, line in enumerate(lines) if line.startswith('  File "')]
+    after = lines[frames[-1] + 1 :] if frames else []
+    return next((line for line in after if line[:1].strip()), lines[-1])

@@ -77,6 +77,31 @@ def test_a_script_that_breaks_or_claims_nothing_turns_the_report_red(text: str, 
     assert records[0]["error"]
 
 
+@pytest.mark.parametrize(
+    ("last", "line"),
+    [
+        ("raise RuntimeError('broken | badly <b>\\n\\nsee below')", "RuntimeError: broken | badly <b>"),
+        ("import sys; sys.exit('gave up')", "gave up"),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", "ended with exit code -9"),
+    ],
+)
+def test_a_crash_is_one_line_on_the_terminal_and_all_of_it_on_the_page(last: str, line: str, checkout: Path) -> None:
+    (checkout / "bad.py").write_text(f"import sys\nprint('the first word', file=sys.stderr, flush=True)\n{last}\n")
+    done = CliRunner().invoke(app, ["validate"])
+    assert done.exit_code == 1
+    assert [text for text in done.stdout.splitlines() if "bad" in text] == [f"broke: bad: {line}"]
+    page = Path("out/validation/index.html").read_text()
+    _, details = page.split("<details", 1)
+    trace = details.split("</details>")[0]
+    assert "the first word" in trace
+    if "raise" in last:
+        assert "Traceback (most recent call last)" in trace
+        assert "see below" in trace
+        assert "badly &lt;b&gt;" in trace
+    assert "Not every claim holds." in page
+    assert "**broke**" in Path("out/validation/claims.md").read_text()
+
+
 def test_an_exit_code_that_does_not_fit_turns_the_report_red(checkout: Path) -> None:
     script = SCRIPT.format(bound=2.0).replace(
         "run(main, __doc__)", "try:\n    run(main, __doc__)\nfinally:\n    raise SystemExit(9)"
