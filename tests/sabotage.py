@@ -1,0 +1,47 @@
+"""Four ways to break the package on purpose, each as a function that does it for the rest of the process.
+
+All of them replace Python around the kernels, never a kernel: what is compiled and kept on disk stays sound.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from kinsim import printed
+from kinsim.balance import schemes, stages
+from kinsim.kinetic.wing import Density
+from kinsim.macroscopic import wing
+
+
+def printed_flux() -> None:
+    """The closed-form fluxes with the misprints of the paper, I3 among them."""
+
+    def flux(hl: Any, ul: Any, hr: Any, ur: Any, beta: float, F1: np.ndarray, F2: np.ndarray) -> None:
+        F1[:], F2[:] = printed.flux(hl, ul, hr, ur, beta)
+
+    wing.flux_closed = flux
+
+
+def reversed_shift() -> None:
+    """A sign error in the shift: f is pushed by -J."""
+
+    def push(self: Density, f: Any, M: Any, now: Any, out: Any) -> float:
+        return self._force(f, M, -now.J, self.pulled(now), self.grid.dxi, out, self.offset)
+
+    Density._push = push  # type: ignore[method-assign]
+
+
+def dropped_ghosts() -> None:
+    """Ghost cells are left empty."""
+
+    def extend(boundary: object, h: np.ndarray, u: np.ndarray) -> None:
+        h[0] = h[-1] = u[0] = u[-1] = 0.0
+
+    stages.extend = extend
+
+
+def coupled_by_cell() -> None:
+    """The coupling by cell is sold as the one by face, which is conservative."""
+    schemes.Scheme3Face = schemes.Scheme3Cell  # type: ignore[misc]
