@@ -28,13 +28,11 @@ ROW = re.compile(r"<tr><td>([^<]+)</td>(?:<td class=\"number\">[^<]*</td>\s*){2}
 def validated(tmp_path: Path, sabotage: str = "") -> tuple[int, str, str]:
     """``kinsim validate --only canary`` in this checkout: exit code, what it printed, the page.
 
-    Python imports a module called sitecustomize when it starts, so that the script finds the package broken.
+    Python imports a module called sitecustomize when it starts, so that every process finds the package broken.
     """
     path = tmp_path / "path"
     path.mkdir()
-    if sabotage:
-        broken = f"import sys\nif sys.orig_argv[1].endswith('canary.py'):\n    import sabotage\n    sabotage.{sabotage}()\n"
-        (path / "sitecustomize.py").write_text(broken)
+    (path / "sitecustomize.py").write_text(f"import sabotage\nsabotage.{sabotage}()\n" if sabotage else "")
     paths = (path, HERE, Path(kinsim.__file__).parents[1])
     env = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, paths)), "COLUMNS": "200"}
     command = [sys.executable, "-P", "-m", "kinsim", "validate", "--only", "canary", "--out", str(tmp_path / "out")]
