@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, TypeVar, dataclass_transform
 
-from pydantic import BeforeValidator, ConfigDict, Field, Strict, ValidationError
+from pydantic import BeforeValidator, ConfigDict, Field, Strict, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass as validated_dataclass
 
 from .errors import InputError
@@ -48,6 +48,18 @@ def value(cls: type[T]) -> type[T]:
 
     made.__init__ = __init__
     return made  # type: ignore[no-any-return]
+
+
+def checked(place: str, family: Any, given: Any) -> Any:
+    """`given` as a number of the `family`, for what is no field of a value; `place` names it.
+
+    Raises:
+        InputError: It is none.
+    """
+    try:
+        return TypeAdapter(family, config=ConfigDict(allow_inf_nan=False)).validate_python(given)
+    except ValidationError as error:
+        raise InputError(one_line(error, place, family)) from None
 
 
 def kind(name: str) -> Any:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import ast
+import re
+from typing import Any
+
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -103,6 +107,42 @@ def test_a_flux_that_raises_or_has_the_wrong_shape_is_refused() -> None:
         crosscheck(lambda hl, *rest: (hl * 1j, hl))
     with pytest.raises(InputError, match="returned shapes"):
         crosscheck(lambda *given: (0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({"count": 1.5}, "crosscheck: count: should be a valid integer, got 1.5"),
+        ({"count": 0}, "crosscheck: count: should be greater than or equal to 1, got 0"),
+        ({"seed": -1}, "crosscheck: seed: should be greater than or equal to 0, got -1"),
+        ({"seed": None}, "crosscheck: seed: should be a valid integer, got a NoneType"),
+        ({"beta": np.nan}, "crosscheck: beta: should be a finite number, got nan"),
+        ({"beta": 1e200}, "crosscheck: beta: should be less than or equal to 1000000000000000, got 1e\\+200"),
+        ({"beta": 0.4j}, "crosscheck: beta: should be a valid number, got a complex"),
+        ({"tolerance": 0}, "crosscheck: tolerance: should be greater than 0, got 0"),
+        ({"flux": 3}, "crosscheck: the flux is of type int; give a function"),
+    ],
+)
+def test_bad_arguments_get_one_line(given: dict[str, Any], line: str) -> None:
+    with pytest.raises(InputError, match=f"^{line}$"):
+        crosscheck(**{"flux": closed, **given})
+
+
+def test_beta_may_be_any_number() -> None:
+    for beta in (5e-324, 1e-300, 1e15, np.float64(0.4), "2/5", 1):
+        assert crosscheck(closed, beta=beta, count=20).passes
+
+
+def test_where_it_first_fails_can_be_pasted() -> None:
+    """What stands before and after the sign of equality is Python, with every digit."""
+    for flux in (printed.flux, lambda *given: closed(*given[:4], 0.4)):
+        failure = crosscheck(flux).first_failure
+        assert failure is not None
+        call, found = re.fullmatch(r".*: (flux\(.*\)) = (\(.*\)), expected .*", str(failure)).groups()
+        given, F = ast.literal_eval(call.removeprefix("flux")), ast.literal_eval(found)
+        assert given == (*failure.state, failure.beta)
+        again = [float(part[0]) for part in flux(*(np.array([number]) for number in given[:4]), given[4])]
+        np.testing.assert_allclose(again, F, rtol=1e-15)
 
 
 def test_regimes_are_what_they_say() -> None:

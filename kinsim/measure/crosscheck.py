@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from ..errors import InputError
 from ..kinetic.equilibrium import EQUILIBRIA, Status
 from ..kinetic.transport import half_sums
 from ..kinetic.velocity import Grid
+from ..value import Number, Whole, checked
 
 Array = NDArray[np.float64]
 Flux = Callable[..., tuple[Any, Any]]
@@ -20,6 +22,14 @@ States = tuple[Array, Array, Array, Array]
 
 NODES = 512
 """Velocity cells of the grid that a flux is held against."""
+
+ASKED = {
+    "beta": Annotated[Number, Field(gt=0, le=1e15)],
+    "count": Annotated[Whole, Field(ge=1)],
+    "tolerance": Annotated[Number, Field(gt=0)],
+    "seed": Annotated[Whole, Field(ge=0)],
+}
+"""What may be asked."""
 
 OTHER = 2.3
 """The flux is asked again at so many times beta."""
@@ -35,20 +45,18 @@ class Failure:
     Attributes:
         check: Which one.
         state: h_left, u_left, h_right, u_right.
+        beta: The beta that the flux was asked at.
         found, expected: (F1, F2) as given and as they should be.
     """
 
     check: str
     state: tuple[float, float, float, float]
+    beta: float
     found: tuple[float, float]
     expected: tuple[float, float]
 
     def __str__(self) -> str:
-        h_left, u_left, h_right, u_right = self.state
-        return (
-            f"{self.check} at (h, u) = ({h_left:.6g}, {u_left:.6g}) | ({h_right:.6g}, {u_right:.6g}): "
-            f"F = ({self.found[0]:.6g}, {self.found[1]:.6g}), expected ({self.expected[0]:.6g}, {self.expected[1]:.6g})"
-        )
+        return f"{self.check}: flux{(*self.state, self.beta)} = {self.found}, expected {self.expected}"
 
 
 @dataclass(frozen=True)
@@ -103,16 +111,18 @@ def crosscheck(
 
     Args:
         flux: Vectorised, ``flux(h_left, u_left, h_right, u_right, beta) -> (F1, F2)`` for arrays of one shape.
-        beta: As in (1), > 0; the flux is asked at 2.3 beta, too.
-        count: Random states per regime.
+        beta: As in (1), > 0 and at most 1e15; the flux is asked at 2.3 beta, too.
+        count: Random states per regime, at least 1.
         tolerance: Largest error allowed, in flux scales.
         seed: Of the random states.
 
     Raises:
-        InputError: The flux raises, or does not return two arrays of the shape it was given.
+        InputError: The flux raises, or does not return two arrays of the shape it was given; or a number is none.
     """
-    if not (0 < beta < np.inf and count > 0 and tolerance > 0):
-        raise InputError("crosscheck: beta, count and tolerance must be above 0 and finite")
+    given = {"beta": beta, "count": count, "tolerance": tolerance, "seed": seed}
+    beta, count, tolerance, seed = (checked(f"crosscheck: {name}", ASKED[name], given[name]) for name in given)
+    if not callable(flux):
+        raise InputError(f"crosscheck: the flux is of type {type(flux).__name__}; give a function")
     dice = np.random.default_rng(seed)
     there = [_judge(name, states, flux, beta, tolerance) for name, states in regimes(dice, count, beta).items()]
     other = OTHER * beta  # a flux that has beta built in is right at one beta only
@@ -212,7 +222,7 @@ def _judge(name: str, states: States, flux: Flux, beta: float, tolerance: float)
             i = int(bad[0])
             state = (float(given[0][i]), float(given[1][i]), float(given[2][i]), float(given[3][i]))
             pairs = [(float(pair[0][i]), float(pair[1][i])) for pair in (got, expected)]
-            failure = Failure(f"{check}, {name}", state, pairs[0], pairs[1])
+            failure = Failure(f"{check}, {name}", state, beta, pairs[0], pairs[1])
     grid = float(_off(found, on_grid(states, beta), scale).max())
     return Regime(name, errors[0], grid, errors[1], errors[2], failure)
 
@@ -225,7 +235,8 @@ def _ask(flux: Flux, states: States, beta: float) -> tuple[Array, Array]:
             raise TypeError("it returned complex numbers")
         first, second = first.astype(float), second.astype(float)
     except (Exception, SystemExit) as error:  # somebody else's code may raise anything
-        raise InputError(f"crosscheck: the flux failed with {type(error).__name__}: {error}") from error
+        said = " ".join(str(error).split())
+        raise InputError(f"crosscheck: the flux failed with {type(error).__name__}: {said}") from error
     if first.shape != states[0].shape or second.shape != states[0].shape:
         raise InputError(
             f"crosscheck: the flux returned shapes {first.shape} and {second.shape} for states of {states[0].shape}"
