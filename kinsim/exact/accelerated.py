@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from ..model.cells import Cells
 from ..value import Number, value
 from . import sliding
-from .domain import Array, NonNegative, moment, places
+from .domain import Array, NonNegative, finite, moment, places
 from .riemann import Riemann
 
 
@@ -46,24 +46,27 @@ class AcceleratedRiemann:
     def __post_init__(self) -> None:
         self.m  # noqa: B018
 
+    @finite
     def __call__(self, x: ArrayLike, t: float) -> tuple[Array, Array]:
         """Height and velocity at the places `x` at the time `t`, each of the shape of `x`.
 
         Raises:
             InputError: t is not between 0 and `until`, or an x is not a number.
         """
-        moment("AcceleratedRiemann", t, self.until)
+        t = moment("AcceleratedRiemann", t, self.until)
         h, u = self.riemann(places("AcceleratedRiemann", x) - self.way(t), t)
         u[h > 0.0] += self.m * t
         return h, u
 
+    @finite
     def averages(self, cells: Cells, t: float) -> tuple[Array, Array]:
         """Averages of h and of q = h u over each of the `cells` at the time `t`, exact, each of shape (cells.count,).
 
         Raises:
             InputError: t is not between 0 and `until`.
         """
-        way = self.way(moment("AcceleratedRiemann", t, self.until))
+        t = moment("AcceleratedRiemann", t, self.until)
+        way = self.way(t)
         h, q = self.riemann.averages(Cells(cells.left - way, cells.right - way, cells.count), t)
         return h, q + self.m * t * h
 
@@ -79,4 +82,5 @@ class AcceleratedRiemann:
 
     def way(self, t: float) -> float:
         """How far the frame has gone at the time `t`, m t^2/2."""
+        t = moment("AcceleratedRiemann", t)
         return 0.5 * self.m * t * t

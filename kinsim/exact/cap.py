@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import sys
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from ..model.cells import Cells
 from ..value import Number, value
 from . import sliding
-from .domain import Array, NonNegative, Positive, moment, places
+from .domain import TOO_FAR, Array, NonNegative, Positive, finite, held, moment, places
 from .quadrature import averages
+from .root import root_between
 
 
 @value
@@ -58,17 +58,23 @@ class ParabolicCap:
     u0: Number = 0.0
     x0: Number = 0.0
 
+    def __post_init__(self) -> None:
+        self.until  # noqa: B018
+
+    @finite
     def __call__(self, x: ArrayLike, t: float) -> tuple[Array, Array]:
         """Height and velocity at the places `x` at the time `t`, each of the shape of `x`.
 
         Raises:
             InputError: t is not between 0 and `until`, or an x is not a number.
         """
+        t = moment("ParabolicCap", t, self.until)
         middle, half, spreading = self.shape(t)
         y = (places("ParabolicCap", x) - middle) / half
-        h = np.maximum(self.h0 * self.length / half * ((1.0 - y) * (1.0 + y)), 0.0)
+        h = np.maximum(self.h0 * (self.length / half) * ((1.0 - y) * (1.0 + y)), 0.0)
         return h, np.where(h > 0.0, self.u0 + self.m * t + y * spreading, 0.0)
 
+    @finite
     def averages(self, cells: Cells, t: float) -> tuple[Array, Array]:
         """Averages of h and of q = h u over each of the `cells` at the time `t`, exact, each of shape (cells.count,).
 
@@ -78,15 +84,16 @@ class ParabolicCap:
         middle, half, _ = self.shape(t)
         return averages(lambda x: self(x, t), (middle - half, middle + half), cells)
 
+    @finite
     def shape(self, t: float) -> tuple[float, float, float]:
         """The middle xc, half the length G and G' at the time `t`.
 
         Raises:
             InputError: t is not between 0 and `until`.
         """
-        moment("ParabolicCap", t, self.until)
+        t = moment("ParabolicCap", t, self.until)
         target = 2.0 * self._spread * t / self.length
-        w = _root(lambda w: (math.sinh(w) + w) - target, math.asinh(target))
+        w = root_between(lambda w: (math.sinh(w) + w) - target, 0.0, math.asinh(target))
         middle = self.x0 + (self.u0 + 0.5 * self.m * t) * t
         return middle, self.length * math.cosh(0.5 * w) ** 2, self._spread * math.tanh(0.5 * w)
 
@@ -101,35 +108,30 @@ class ParabolicCap:
         if self.resistance == 0.0:
             return math.inf
         towards = -1.0 if self.u0 < 0.0 or (self.u0 == 0.0 and self.m < 0.0) else 1.0
-        u0, m, spread = towards * self.u0, towards * self.m, self._spread
-        unit = 0.5 * self.length / spread
+        unit = 0.5 * self.length / self._spread
+        u0, m = towards * self.u0 / self._spread, towards * self.m / self._spread * unit
+        if not (held(u0, m, unit) and (self.m == 0.0 or abs(m) >= max(u0, 1.0) * sys.float_info.min)):
+            raise ValueError(TOO_FAR)  # so that u0/m can be told from infinity below
 
         def margin(w: float) -> float:
-            """The rear's velocity u0 + m t - G' at t = unit (sinh w + w)."""
-            return u0 + m * unit * (math.sinh(w) + w) - spread * math.tanh(0.5 * w)
+            """The rear's velocity u0 + m t - G' at t = unit (sinh w + w), over V."""
+            return u0 + m * (math.sinh(w) + w) - math.tanh(0.5 * w)
 
         if m > 0.0:
-            steepest = spread / math.sqrt(2.0 * self.length * m)  # cosh(w/2)^2 where m = G''
+            steepest = 0.5 / math.sqrt(m)  # cosh(w/2)^2 where m = G''
             last = 2.0 * math.acosh(max(math.sqrt(steepest), 1.0))
         elif m < 0.0:
-            last = math.asinh(-u0 / (m * unit))
+            last = math.asinh(-u0 / m)
         else:
-            last = 2.0 * math.atanh(u0 / spread) if u0 < spread else math.inf
+            last = 2.0 * math.atanh(u0) if u0 < 1.0 else math.inf
         if math.isinf(last) or (m > 0.0 and margin(last) >= 0.0):
             return math.inf
         if u0 == 0.0:
             return 0.0
-        w = _root(margin, last)
+        w = root_between(margin, 0.0, last)
         return unit * (math.sinh(w) + w)
 
     @property
     def _spread(self) -> float:
         """V, the speed that G' tends to."""
-        return 2.0 * math.sqrt(self.beta * self.h0)
-
-
-def _root(function: Callable[[float], float], high: float) -> float:
-    """Where `function` changes its sign between 0 and `high`; `high` itself if rounding hides the change."""
-    if function(0.0) * function(high) >= 0.0:
-        return high
-    return float(brentq(function, 0.0, high, xtol=np.finfo(float).tiny, rtol=4 * np.finfo(float).eps))
+        return 2.0 * (math.sqrt(self.beta) * math.sqrt(self.h0))

@@ -6,7 +6,7 @@ import math
 
 from ..value import Number, value
 from . import sliding
-from .domain import NonNegative
+from .domain import NonNegative, finite, moment
 
 
 @value
@@ -31,8 +31,14 @@ class Motion:
     drive: Number
     resistance: NonNegative
 
+    @finite
     def __call__(self, t: float) -> tuple[float, float]:
-        """u(t), and the integral of u from 0 to t."""
+        """u(t), and the integral of u from 0 to t.
+
+        Raises:
+            InputError: t is negative or not finite.
+        """
+        t = moment("Motion", t)
         g, arrest = self.braked, self.arrest
         if t <= arrest:
             return self.u0 + g * t, (self.u0 + 0.5 * g * t) * t

@@ -11,7 +11,7 @@ from pydantic import Field
 
 from ..model.cells import Cells
 from ..value import Number, value
-from .domain import Array, NonNegative, Positive, moment, places
+from .domain import Array, NonNegative, Positive, finite, moment, places
 from .quadrature import averages
 
 Share = Annotated[Number, Field(ge=-1, le=1)]
@@ -57,6 +57,7 @@ class StaticPile:
         if self.floor > 0.0 and abs(self.pull) > self.resistance:
             raise ValueError(f"a floor of height {self.floor:g} would slide: |pull| > resistance; take floor = 0")
 
+    @finite
     def __call__(self, x: ArrayLike, t: float) -> tuple[Array, Array]:
         """Height and velocity at the places `x` at the time `t`, each of the shape of `x`.
 
@@ -69,6 +70,7 @@ class StaticPile:
         h = np.maximum(self.floor, self.h0 + np.where(off < 0.0, left, right) * off)
         return h, np.zeros(h.shape)
 
+    @finite
     def averages(self, cells: Cells, t: float) -> tuple[Array, Array]:
         """Averages of h and of q = 0 over each of the `cells` at the time `t`, exact, each of shape (cells.count,).
 

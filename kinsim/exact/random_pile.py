@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Literal, get_args
+from typing import Annotated, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic import Field
 
 from ..errors import InputError
 from ..model.cells import Cells
 from ..model.heap import Profile
-from .domain import Array
+from ..value import Number, Whole, checked
+from .domain import TOO_FAR, Array, NonNegative, Positive, held, numbers
 
 Per = Literal["face", "cell"]
+Fill = Annotated[Number, Field(ge=0, le=1e6)]
+Seed = Annotated[Whole, Field(ge=0)]
 
 
 def random_pile(
@@ -36,7 +40,7 @@ def random_pile(
         pull: s = sin zeta (dimensionless).
         resistance: R = cos zeta tan delta > 0 (dimensionless).
         beta: As in (1), > 0.
-        fill: Largest |theta|, >= 0.
+        fill: Largest |theta|, >= 0 and at most a million.
         per: "face" or "cell".
         rng: Random numbers, or a seed for them.
         lowest: The smallest height, >= 0.
@@ -47,26 +51,28 @@ def random_pile(
     Raises:
         InputError: A number is outside its range; or no pile per cell has this fill (few cells on steep ground).
     """
-    _check(pull, resistance, beta, per)
-    for name, number in (("fill", fill), ("lowest", lowest)):
-        if not 0.0 <= number < np.inf:
-            raise InputError(f"random_pile: {name} = {number:g} is outside its range; take a finite {name} >= 0")
-    dice = np.random.default_rng(rng)
+    pull, resistance, beta = _ground(pull, resistance, beta, per)
+    fill, lowest = checked("pile: fill", Fill, fill), checked("pile: lowest", NonNegative, lowest)
+    dice = rng if isinstance(rng, np.random.Generator) else np.random.default_rng(checked("pile: rng", Seed, rng))
     count = cells.count if per == "cell" else cells.count - 1
     theta = dice.uniform(-fill, fill, count)
     fixed = int(dice.integers(count))
     theta[fixed] = fill * dice.choice([-1.0, 1.0])
     if per == "cell":
         theta = _balance(theta, fixed, fill, pull / resistance)
-    rise = (pull + theta * resistance) / beta * cells.dx
-    h = np.zeros(cells.count)
-    if per == "face":
-        h[1:] = np.cumsum(rise)
-    else:
-        h[1] = 2.0 * rise[0]
-        h[2::2] = 2.0 * np.cumsum(rise[1:-1:2])
-        h[3::2] = h[1] + 2.0 * np.cumsum(rise[2:-1:2])
-    return Profile(h - h.min() + lowest)
+    with np.errstate(over="ignore", invalid="ignore"):
+        rise = (pull + theta * resistance) / beta * cells.dx
+        h = np.zeros(cells.count)
+        if per == "face":
+            h[1:] = np.cumsum(rise)
+        else:
+            h[1] = 2.0 * rise[0]
+            h[2::2] = 2.0 * np.cumsum(rise[1:-1:2])
+            h[3::2] = h[1] + 2.0 * np.cumsum(rise[2:-1:2])
+        h = h - h.min() + lowest
+    if not held(h):
+        raise InputError(f"pile: {TOO_FAR}")
+    return Profile(h)
 
 
 def coulomb_fill(h: ArrayLike, dx: float, *, pull: float, resistance: float, beta: float, per: Per) -> float:
@@ -75,26 +81,33 @@ def coulomb_fill(h: ArrayLike, dx: float, *, pull: float, resistance: float, bet
     Definition 1 holds where it is at most 1.
 
     Raises:
-        InputError: A number is outside its range.
+        InputError: A number is outside its range, or a height is none.
     """
-    _check(pull, resistance, beta, per)
-    heights: Array = np.asarray(h, dtype=float)
-    if per == "face":
-        slope = np.diff(heights) / dx
-    else:
-        ghosted = np.pad(heights, 1, mode="edge")
-        slope = (ghosted[2:] - ghosted[:-2]) / (2.0 * dx)
-    return float(np.max(np.abs(beta * slope - pull)) / resistance)
+    dx = checked("pile: dx", Positive, dx)
+    pull, resistance, beta = _ground(pull, resistance, beta, per)
+    heights = numbers("pile: h", h)
+    if heights.ndim != 1 or heights.size < 2:
+        raise InputError(f"pile: h has the shape {heights.shape}; give two heights or more in a row")
+    with np.errstate(over="ignore"):
+        if per == "face":
+            slope = np.diff(heights) / dx
+        else:
+            ghosted = np.pad(heights, 1, mode="edge")
+            slope = (ghosted[2:] - ghosted[:-2]) / (2.0 * dx)
+        found = float(np.max(np.abs(beta * slope - pull)) / resistance)
+    if not held(found):
+        raise InputError(f"pile: {TOO_FAR}")
+    return found
 
 
-def _check(pull: float, resistance: float, beta: float, per: Per) -> None:
+def _ground(pull: float, resistance: float, beta: float, per: Per) -> tuple[float, float, float]:
     if per not in get_args(Per):
         raise InputError(f"pile: per = {per!r} is unknown; take {' or '.join(map(repr, get_args(Per)))}")
-    if not np.isfinite(pull):
-        raise InputError(f"pile: pull = {pull:g} is not finite; give sin zeta")
-    for name, number in (("resistance", resistance), ("beta", beta)):
-        if not 0.0 < number < np.inf:
-            raise InputError(f"pile: {name} = {number:g} is outside its range; take a finite {name} > 0")
+    return (
+        checked("pile: pull", Number, pull),
+        checked("pile: resistance", Positive, resistance),
+        checked("pile: beta", Positive, beta),
+    )
 
 
 def _balance(theta: Array, fixed: int, fill: float, tilt: float) -> Array:

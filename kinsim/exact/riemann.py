@@ -7,12 +7,13 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import brentq
 
 from ..model.cells import Cells
 from ..value import Number, value
-from .domain import Array, NonNegative, Positive, moment, places
+from . import jump
+from .domain import TOO_FAR, Array, NonNegative, Positive, finite, held, moment, places
 from .quadrature import averages
+from .root import root_between
 
 
 @value
@@ -47,6 +48,11 @@ class Riemann:
     beta: Positive
     x0: Number = 0.0
 
+    def __post_init__(self) -> None:
+        if not held(*self.middle, *self.speeds):
+            raise ValueError(TOO_FAR)
+
+    @finite
     def __call__(self, x: ArrayLike, t: float) -> tuple[Array, Array]:
         """Height and velocity at the places `x` at the time `t`, each of the shape of `x`.
 
@@ -61,6 +67,7 @@ class Riemann:
             h[inside], u[inside] = self._state(number, there[inside], t)
         return h, u
 
+    @finite
     def averages(self, cells: Cells, t: float) -> tuple[Array, Array]:
         """Averages of h and of q = h u over each of the `cells` at the time `t`, exact, each of shape (cells.count,).
 
@@ -72,7 +79,7 @@ class Riemann:
     @cached_property
     def middle(self) -> tuple[float, float]:
         """The state (h*, u*) between the two waves, (0, 0) where there is none."""
-        a_left, a_right = math.sqrt(self.beta * self.h_left), math.sqrt(self.beta * self.h_right)
+        a_left, a_right = self._celerity(self.h_left), self._celerity(self.h_right)
         rise = self.u_right - self.u_left
         if min(self.h_left, self.h_right) == 0.0 or rise >= 2.0 * (a_left + a_right):
             return 0.0, 0.0
@@ -84,11 +91,14 @@ class Riemann:
         if low == high and rise == 0.0:
             h = low
         elif excess(low) >= 0.0:  # two fans
-            h = (0.5 * (a_left + a_right) - 0.25 * rise) ** 2 / self.beta
+            root = (0.5 * (a_left + a_right) - 0.25 * rise) / math.sqrt(self.beta)
+            h = root * root
         else:
             while excess(high) < 0.0:
                 high *= 2.0
-            h = brentq(excess, low, high, xtol=np.finfo(float).tiny, rtol=4 * np.finfo(float).eps)
+            if math.isinf(high):
+                raise ValueError(TOO_FAR)
+            h = root_between(excess, low, high)
         return h, 0.5 * ((self.u_left + self.u_right) + (self._phi(h, self.h_right) - self._phi(h, self.h_left)))
 
     @cached_property
@@ -115,16 +125,20 @@ class Riemann:
     def _wave(self, h_side: float, u_side: float, h: float, u: float, sign: float) -> tuple[float, float]:
         """Outer and inner speed of the wave that joins (h_side, u_side) to the middle (h, u)."""
         if h > h_side:
-            shock = u_side + sign * math.sqrt(0.5 * self.beta * h * ((h + h_side) / h_side))
+            shock = u_side + sign * jump.speed(h, h_side, self.beta)
             return shock, shock
-        a_side = math.sqrt(self.beta * h_side)
-        inner = u + sign * math.sqrt(self.beta * h) if h > 0.0 else u_side - sign * 2.0 * a_side
+        a_side = self._celerity(h_side)
+        inner = u + sign * self._celerity(h) if h > 0.0 else u_side - sign * 2.0 * a_side
         return u_side + sign * a_side, inner
 
     def _phi(self, h: float, h_side: float) -> float:
         if h <= h_side:
-            return 2.0 * (math.sqrt(self.beta * h) - math.sqrt(self.beta * h_side))
-        return (h - h_side) * math.sqrt(0.5 * self.beta * (1.0 / h + 1.0 / h_side))
+            return 2.0 * (self._celerity(h) - self._celerity(h_side))
+        return jump.difference(h, h_side, self.beta)
+
+    def _celerity(self, h: float) -> float:
+        """a = sqrt(beta h), whose product may leave floating point where its roots do not."""
+        return math.sqrt(self.beta) * math.sqrt(h)
 
     def _ends(self, t: float) -> Array:
         """Where the five pieces (left, left wave, middle, right wave, right) meet at `t`, ascending, shape (4,)."""
@@ -135,8 +149,8 @@ class Riemann:
         if piece in (1, 3) and t > 0.0:
             h_side, u_side, sign = (self.h_left, self.u_left, -1.0) if piece == 1 else (self.h_right, self.u_right, 1.0)
             ray = (x - self.x0) / t
-            far = u_side - sign * 2.0 * math.sqrt(self.beta * h_side)
+            far = u_side - sign * 2.0 * self._celerity(h_side)
             a = np.maximum(sign * (ray - far), 0.0) / 3.0
-            return a * a / self.beta, np.where(a > 0.0, (far + 2.0 * ray) / 3.0, 0.0)
+            return (a / math.sqrt(self.beta)) ** 2, np.where(a > 0.0, (far + 2.0 * ray) / 3.0, 0.0)
         h, u = {0: (self.h_left, self.u_left), 4: (self.h_right, self.u_right)}.get(piece, self.middle)
         return np.full(x.shape, h), np.full(x.shape, u if h > 0.0 else 0.0)

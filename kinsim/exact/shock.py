@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cached_property
 
 import numpy as np
@@ -10,8 +9,8 @@ from numpy.typing import ArrayLike
 
 from ..model.cells import Cells
 from ..value import Number, value
-from . import sliding
-from .domain import Array, NonNegative, Positive, moment, places
+from . import jump, sliding
+from .domain import TOO_FAR, Array, NonNegative, Positive, finite, held, moment, places
 from .quadrature import averages
 
 
@@ -54,19 +53,22 @@ class TravellingShock:
     x0: Number = 0.0
 
     def __post_init__(self) -> None:
-        self.m  # noqa: B018
+        if not (held(self.u_right, self.speed) and held(self.m)):
+            raise ValueError(TOO_FAR)
 
+    @finite
     def __call__(self, x: ArrayLike, t: float) -> tuple[Array, Array]:
         """Height and velocity at the places `x` at the time `t`, each of the shape of `x`.
 
         Raises:
             InputError: t is not between 0 and `until`, or an x is not a number.
         """
-        moment("TravellingShock", t, self.until)
+        t = moment("TravellingShock", t, self.until)
         left = places("TravellingShock", x) <= self.place(t)
         u = np.where(left, self.u_left, self.u_right) + self.m * t
         return np.where(left, self.h_left, self.h_right), u
 
+    @finite
     def averages(self, cells: Cells, t: float) -> tuple[Array, Array]:
         """Averages of h and of q = h u over each of the `cells` at the time `t`, exact, each of shape (cells.count,).
 
@@ -78,15 +80,14 @@ class TravellingShock:
     @cached_property
     def u_right(self) -> float:
         """Velocity of the right layer at t = 0."""
-        jump = math.sqrt(0.5 * self.beta * (1.0 / self.h_left + 1.0 / self.h_right))
-        return self.u_left - abs(self.h_left - self.h_right) * jump
+        return self.u_left - jump.difference(self.h_left, self.h_right, self.beta)
 
     @cached_property
     def speed(self) -> float:
         """S, the speed of the shock at t = 0."""
         high, low = max(self.h_left, self.h_right), min(self.h_left, self.h_right)
         u, sign = (self.u_right, 1.0) if self.h_left >= self.h_right else (self.u_left, -1.0)
-        return u + sign * math.sqrt(0.5 * self.beta * high * ((high + low) / low))
+        return u + sign * jump.speed(high, low, self.beta)
 
     @cached_property
     def m(self) -> float:
@@ -100,4 +101,5 @@ class TravellingShock:
 
     def place(self, t: float) -> float:
         """Where the shock is at the time `t`."""
+        t = moment("TravellingShock", t)
         return self.x0 + self.speed * t + 0.5 * self.m * t * t

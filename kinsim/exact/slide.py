@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from ..model.cells import Cells
 from ..value import Number, value
-from .domain import Array, NonNegative, Positive, moment, places
+from .domain import Array, NonNegative, Positive, finite, moment, places
 from .motion import Motion
 
 
@@ -35,6 +35,7 @@ class UniformSlide:
     resistance: NonNegative = 0.0
     h: Positive = 1.0
 
+    @finite
     def __call__(self, x: ArrayLike, t: float) -> tuple[Array, Array]:
         """Height and velocity at the places `x` at the time `t`, each of the shape of `x`.
 
@@ -44,6 +45,7 @@ class UniformSlide:
         shape = places("UniformSlide", x).shape
         return np.full(shape, self.h), np.full(shape, self.motion(moment("UniformSlide", t))[0])
 
+    @finite
     def averages(self, cells: Cells, t: float) -> tuple[Array, Array]:
         """Averages of h and of q = h u over each of the `cells` at the time `t`, exact, each of shape (cells.count,).
 

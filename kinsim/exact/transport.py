@@ -12,7 +12,7 @@ from pydantic import Field
 from ..errors import InputError
 from ..model.cells import Cells
 from ..value import Number, Whole, value
-from .domain import Array, moment, places
+from .domain import Array, moment, numbers, places
 from .quadrature import cell_edges
 
 Density = Callable[[Array, Array], Array]
@@ -49,9 +49,11 @@ class FreeTransport:
         Raises:
             InputError: t is negative or not finite, or an x or xi is not a number.
         """
-        moment("FreeTransport", t)
+        t = moment("FreeTransport", t)
         there, speed = np.broadcast_arrays(places("FreeTransport", x), places("FreeTransport", xi))
-        return np.asarray(self.f0(there - speed * t + 0.5 * self.g * t * t, speed - self.g * t), dtype=float)
+        with np.errstate(over="ignore", invalid="ignore"):
+            start = places("FreeTransport, at the start", there - speed * t + 0.5 * self.g * t * t)
+            return numbers("FreeTransport: f0", self.f0(start, speed - self.g * t))
 
     def averages(self, cells: Cells, xi: ArrayLike, t: float) -> Array:
         """Averages of f over each of the `cells` times each velocity cell, shape (cells.count, len(xi) - 1).

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 from ..errors import InputError
 from ..model.cells import Cells
 from ..value import Number, value
-from .domain import Array, NonNegative, Positive, moment, places
+from .domain import Array, NonNegative, Positive, finite, moment, places
 from .motion import Motion
 from .quadrature import averages, cell_edges
 
@@ -44,6 +44,7 @@ class SlidingWedge:
     pull: Number = 0.0
     resistance: NonNegative = 0.0
 
+    @finite
     def __call__(self, x: ArrayLike, t: float) -> tuple[Array, Array]:
         """Height and velocity at the places `x` at the time `t`, each of the shape of `x`.
 
@@ -58,6 +59,7 @@ class SlidingWedge:
             raise InputError(f"SlidingWedge: h < 0 at x = {outside:.6g}, t = {t:.6g}; stay where a + b (x - X) >= 0")
         return h, np.where(h > 0.0, u, 0.0)
 
+    @finite
     def averages(self, cells: Cells, t: float) -> tuple[Array, Array]:
         """Averages of h and of q = h u over each of the `cells` at the time `t`, exact, each of shape (cells.count,).
 
