@@ -13,7 +13,8 @@ from typer.testing import CliRunner
 from kinsim import InputError, crosscheck, printed
 from kinsim.cli import app
 from kinsim.macroscopic.half_moments import flux_closed
-from kinsim.measure.crosscheck import by_quadrature, regimes
+from kinsim.measure.reference import by_quadrature
+from kinsim.measure.regimes import regimes
 
 Fluxes = tuple[np.ndarray, np.ndarray]
 

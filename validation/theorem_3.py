@@ -21,7 +21,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from kinsim import Cells, ConstantSlope, Coulomb, Kinetic, Macroscopic, Profile, Scene, Uniform, step
-from kinsim.measure.crosscheck import by_quadrature
+from kinsim.measure.reference import by_quadrature
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)

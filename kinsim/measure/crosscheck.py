@@ -7,21 +7,14 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from ..errors import InputError
-from ..kinetic.equilibrium import EQUILIBRIA, Status
-from ..kinetic.transport import half_sums
-from ..kinetic.velocity import Grid
 from ..value import Number, Whole, checked
+from .reference import by_quadrature, on_grid
+from .regimes import Array, States, regimes
 
-Array = NDArray[np.float64]
 Flux = Callable[..., tuple[Any, Any]]
-States = tuple[Array, Array, Array, Array]
-
-NODES = 512
-"""Velocity cells of the grid that a flux is held against."""
 
 ASKED = {
     "beta": Annotated[Number, Field(gt=0, le=1e15)],
@@ -33,9 +26,6 @@ ASKED = {
 
 OTHER = 2.3
 """The flux is asked again at so many times beta."""
-
-QUADRATURE = 40
-"""Gauss-Legendre nodes in theta, xi = u + c sin theta; the integrand is entire, and so many are exact to rounding."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +56,7 @@ class Regime:
     Attributes:
         name: Which regime.
         quadrature: Difference to half-range moments of M by quadrature: the flux of (24).
-        grid: The same to sums over a velocity grid of `NODES` cells, whose own error is of order n^-2.
+        grid: The same to sums over a velocity grid of `reference.NODES` cells, whose own error is of order n^-2.
         consistency: |F(U, U) - F(U)|, F(U) = (h u, h u^2 + beta h^2/2).
         mirror: Departure from mirror symmetry, F1 odd and F2 even under x to -x.
         failure: Where the first check beyond the tolerance fails, or None.
@@ -138,66 +128,6 @@ def _worse(one: Regime, two: Regime) -> Regime:
         consistency=max(one.consistency, two.consistency), mirror=max(one.mirror, two.mirror),
         failure=one.failure or two.failure,
     )  # fmt: skip
-
-
-def regimes(dice: np.random.Generator, count: int, beta: float) -> dict[str, States]:
-    """Random states (h_left, u_left, h_right, u_right), each of shape (count,), for every regime."""
-
-    def height(low: float = -2.0, high: float = 1.0) -> Array:
-        return 10.0 ** dice.uniform(low, high, count)
-
-    def moving(h: Array, low: float, high: float, signs: tuple[int, ...] = (-1, 1)) -> Array:
-        return dice.choice(signs, count) * dice.uniform(low, high, count) * np.sqrt(2.0 * beta * h)
-
-    def near(h: Array) -> Array:
-        a = 1.0 + dice.choice((-1, 1), count) * 10.0 ** dice.uniform(-12, -1, count)
-        return dice.choice((-1, 1), count) * a * np.sqrt(2.0 * beta * h)
-
-    h, k, thin = height(), height(), height(-12.0, -6.0)
-    dry = np.zeros(count)
-    return {
-        "at rest": (h, dry.copy(), k, dry.copy()),
-        "transonic": (h, moving(h, 0, 1), k, moving(k, 0, 1)),
-        "supersonic to the right": (h, moving(h, 1, 4, (1,)), k, moving(k, 1, 4, (1,))),
-        "supersonic to the left": (h, moving(h, 1, 4, (-1,)), k, moving(k, 1, 4, (-1,))),
-        "parting and colliding": (h, moving(h, 1, 4), k, moving(k, 1, 4)),
-        "a near -1 and 1": (h, near(h), k, near(k)),
-        "near vacuum": (thin, moving(thin, 0, 2), k, moving(k, 0, 2)),
-        "dry on one side": (h, moving(h, 0, 2), dry.copy(), dry.copy()),
-        "dry on both sides": (dry.copy(), dry.copy(), dry.copy(), dry.copy()),
-    }
-
-
-def by_quadrature(states: States, beta: float) -> tuple[Array, Array]:
-    """(F1, F2) of (24) by Gauss-Legendre quadrature of xi^k M over both half-ranges."""
-    h_left, u_left, h_right, u_right = states
-    left = [_half(h_left, u_left, beta, k) for k in (1, 2)]
-    right = [_half(h_right, -u_right, beta, k) for k in (1, 2)]
-    return left[0] - right[0], left[1] + right[1]
-
-
-def _half(h: Array, u: Array, beta: float, k: int) -> Array:
-    """The k-th moment of M over xi > 0."""
-    nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
-    c = np.sqrt(2.0 * beta * h)
-    start = np.arcsin(np.clip(np.divide(-u, c, out=np.where(u > 0, -1.0, 1.0), where=c > 0), -1.0, 1.0))
-    middle, half = 0.5 * (0.5 * np.pi + start), 0.5 * (0.5 * np.pi - start)
-    theta = middle[:, None] + half[:, None] * nodes
-    xi = u[:, None] + c[:, None] * np.sin(theta)
-    moment: Array = (xi**k * np.cos(theta) ** 2) @ weights * half * 2.0 * h / np.pi
-    return moment
-
-
-def on_grid(states: States, beta: float) -> tuple[Array, Array]:
-    """(F1, F2) of (24) by sums over a velocity grid, cell averages of M."""
-    h_left, u_left, h_right, u_right = states
-    reach = max(float(np.max(np.abs(u) + np.sqrt(2.0 * beta * h))) for h, u in ((h_left, u_left), (h_right, u_right)))
-    grid = Grid(NODES, 2.0 * reach / NODES)
-    rows, room = np.empty((h_left.size, NODES)), EQUILIBRIA["cell-average"]
-    room.fill(h_left, u_left, h_right, u_right, beta, grid, rows, Status.empty(h_left.size))
-    P1, P2, N1, N2 = np.empty((4, h_left.size))
-    half_sums(rows, *room.weights(grid), P1, P2, N1, N2)
-    return P1 + N1, P2 + N2
 
 
 def _judge(name: str, states: States, flux: Flux, beta: float, tolerance: float) -> Regime:

@@ -1,0 +1,48 @@
+"""The flux (24) by two ways that know no closed form: quadrature of M, and sums over a velocity grid."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..kinetic.equilibrium import EQUILIBRIA, Status
+from ..kinetic.transport import half_sums
+from ..kinetic.velocity import Grid
+from .regimes import Array, States
+
+NODES = 512
+"""Velocity cells of the grid that a flux is held against."""
+
+QUADRATURE = 40
+"""Gauss-Legendre nodes in theta, xi = u + c sin theta; the integrand is entire, and so many are exact to rounding."""
+
+
+def by_quadrature(states: States, beta: float) -> tuple[Array, Array]:
+    """(F1, F2) of (24) by Gauss-Legendre quadrature of xi^k M over both half-ranges."""
+    h_left, u_left, h_right, u_right = states
+    left = [_half(h_left, u_left, beta, k) for k in (1, 2)]
+    right = [_half(h_right, -u_right, beta, k) for k in (1, 2)]
+    return left[0] - right[0], left[1] + right[1]
+
+
+def _half(h: Array, u: Array, beta: float, k: int) -> Array:
+    """The k-th moment of M over xi > 0."""
+    nodes, weights = np.polynomial.legendre.leggauss(QUADRATURE)
+    c = np.sqrt(2.0 * beta * h)
+    start = np.arcsin(np.clip(np.divide(-u, c, out=np.where(u > 0, -1.0, 1.0), where=c > 0), -1.0, 1.0))
+    middle, half = 0.5 * (0.5 * np.pi + start), 0.5 * (0.5 * np.pi - start)
+    theta = middle[:, None] + half[:, None] * nodes
+    xi = u[:, None] + c[:, None] * np.sin(theta)
+    moment: Array = (xi**k * np.cos(theta) ** 2) @ weights * half * 2.0 * h / np.pi
+    return moment
+
+
+def on_grid(states: States, beta: float) -> tuple[Array, Array]:
+    """(F1, F2) of (24) by sums over a velocity grid, cell averages of M."""
+    h_left, u_left, h_right, u_right = states
+    reach = max(float(np.max(np.abs(u) + np.sqrt(2.0 * beta * h))) for h, u in ((h_left, u_left), (h_right, u_right)))
+    grid = Grid(NODES, 2.0 * reach / NODES)
+    rows, room = np.empty((h_left.size, NODES)), EQUILIBRIA["cell-average"]
+    room.fill(h_left, u_left, h_right, u_right, beta, grid, rows, Status.empty(h_left.size))
+    P1, P2, N1, N2 = np.empty((4, h_left.size))
+    half_sums(rows, *room.weights(grid), P1, P2, N1, N2)
+    return P1 + N1, P2 + N2
