@@ -19,7 +19,7 @@ from dataclasses import replace
 from itertools import product
 
 from claims import Chapter, run
-from laboratory.judged import CASES, CLOCKS, UNLIKE, UNSTABLE, Case, cases_of
+from laboratory.judged import CASES, CLOCKS, UNLIKE, Case, cases_of
 from laboratory.measures import distance
 from laboratory.orders import Panel, falls, order, picture
 
@@ -52,7 +52,7 @@ def to_the_twin(chapter: Chapter, scheme: int, clock: str, cells: int, nodes: tu
     widths = [nodes[0] / n for n in nodes]
     rows, found = [], {}
     for name, case in cases_of(scheme).items():
-        if not settled(scheme, case, clock) or name == "pile" or (scheme == 3 and name not in UNLIKE):
+        if not case.settled(scheme, CLOCKS[clock]) or name == "pile" or (scheme == 3 and name not in UNLIKE):
             continue
         twin, grids = wings(case, scheme, clock, cells, nodes)
         left = case.error(twin)
@@ -71,12 +71,6 @@ def to_the_twin(chapter: Chapter, scheme: int, clock: str, cells: int, nodes: tu
         f"L1(h) to the exact solution, scheme {scheme}, {clock}, dx = {14 / cells:g}, cell averages", heads, rows
     )
     return Panel(f"scheme {scheme}, {clock}", widths, found)
-
-
-def settled(scheme: int, case: Case, clock: str) -> bool:
-    """Whether rounding does not grow."""
-    number = CLOCKS[clock]
-    return not case.rests or (scheme > 1 and (number is None or number < UNSTABLE))
 
 
 def wings(
@@ -105,7 +99,7 @@ def where_dxi_leads(chapter: Chapter, clock: str, cells: int, nodes: tuple[int, 
         what = f"pile at rest, {clock}, {equilibrium}"
         if equilibrium != "matched":
             found[equilibrium] = errors
-        if not settled(3, case, clock):
+        if not case.settled(3, CLOCKS[clock]):
             continue
         if equilibrium == "matched":
             chapter.claim(f"{what}: L1(h), all numbers of nodes", max(errors), high=1e-13)

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 from claims import Chapter, run
-from laboratory.judged import CASES, CLOCKS, SLIDES, UNLIKE, UNSTABLE, cases_of
+from laboratory.judged import CASES, CLOCKS, SLIDES, UNLIKE, cases_of
 from laboratory.orders import Panel, falls, halvings, order, picture
 
 from kinsim import Kinetic, Uniform
@@ -57,11 +57,13 @@ def orders(chapter: Chapter, scheme: int, clock: str, levels: list[int]) -> Pane
 
 def expected(scheme: int, name: str, clock: str) -> tuple[float, float] | None:
     """Bounds of the order; None where rest is unstable, and where the sign of the error is up to chance."""
-    case, number = CASES[name], CLOCKS[clock]
-    if scheme == 1 and case.rests:
-        return (0.7, 1.3) if name == "pile" else None
+    case = CASES[name]
+    if name == "pile" and scheme == 1:
+        return 0.7, 1.3
+    if not case.settled(scheme, CLOCKS[clock]):
+        return None
     if name == "pile":
-        return None if number is not None and number > UNSTABLE else (1.0, 2.1)
+        return 1.0, 2.1
     low, high = case.orders
     return low - 0.1, 2.1 if "wedge" in name else high
 

@@ -42,6 +42,7 @@ from kinsim.exact import UniformSlide, coulomb_fill, random_pile
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
 DT = 1e-3
+SEEDS = (1, 2, 3, 4, 5)
 
 
 def ground(zeta: float = 0.1, delta: float = 0.4, cells: int = 40) -> Scene:
@@ -64,26 +65,31 @@ def pile(scene: Scene, fill: float, seed: int) -> Scene:
 
 def main(chapter: Chapter) -> None:
     """Steady states, starting, stopping, scheme 1, zigzags."""
-    steps = 10_000 if chapter.full else 2000
+    steps = 10_000 if chapter.full else 500
     fills = np.array([0.3, 0.6, 0.9, 1.0, 1.1, 1.3, 1.6])
-    speeds = {name: np.array([largest_u(method, fill, steps) for fill in fills]) for name, method in METHODS.items()}
+    speeds = {
+        name: np.array([[largest_u(method, fill, steps, seed) for seed in SEEDS] for fill in fills])
+        for name, method in METHODS.items()
+    }
     for name in ("scheme 2", "scheme 3", "scheme 3, face", "matched, 64 nodes"):
         inside = speeds[name][fills <= 0.9].max()
-        chapter.claim(f"{name}: largest |u| in {steps} steps of piles inside the bound", inside, high=1e-14)
+        chapter.claim(
+            f"{name}: largest |u| in {steps} steps of {len(SEEDS)} piles inside the bound", inside, high=1e-14
+        )
         chapter.claim(
             f"{name}: least of the same outside it by a tenth or more", speeds[name][fills > 1].min(), low=1e-5
         )
     chapter.claim("cell averages, 64 nodes: largest |u| inside the bound", speeds["cell averages, 64 nodes"][:3].max(),
                   low=1e-8, high=2e-3)  # fmt: skip
-    still = pile(ground(), 0.9, 1)
-    kept = simulate(still, Macroscopic(3), Fixed(DT, steps), steps)
-    chapter.claim("scheme 3: largest relative change of h inside the bound", np.abs(kept.h[-1] / kept.h[0] - 1).max(),
-                  high=4 * EPS)  # fmt: skip
+    kept = [simulate(pile(ground(), 0.9, seed), Macroscopic(3), Fixed(DT, steps), steps).h for seed in SEEDS]
+    chapter.claim("scheme 3: largest relative change of h inside the bound", max(
+        np.abs(h[-1] / h[0] - 1).max() for h in kept), high=4 * EPS)  # fmt: skip
     start(chapter)
     stop(chapter)
     peaks = scheme_1(chapter)
     zigzag = blind(chapter)
-    chapter.figure(draw(fills, speeds, peaks, zigzag), "rest", "What stays, what stops, and what (22) does not see.")
+    worst = {name: each.max(axis=1) for name, each in speeds.items()}
+    chapter.figure(draw(fills, worst, peaks, zigzag), "rest", "What stays, what stops, and what (22) does not see.")
 
 
 METHODS: dict[str, Macroscopic | Kinetic] = {
@@ -108,9 +114,9 @@ def waves(scene: Scene, fill: float, seed: int) -> Scene:
     return replace(scene, heap=Profile(h - h.min() + 0.5))
 
 
-def largest_u(method: Macroscopic | Kinetic, fill: float, steps: int) -> float:
+def largest_u(method: Macroscopic | Kinetic, fill: float, steps: int, seed: int) -> float:
     """Largest |u| of a random pile of waves."""
-    scene = waves(ground(), fill, 1)
+    scene = waves(ground(), fill, seed)
     if isinstance(method, Kinetic):
         bound = 2.5 * np.sqrt(2 * scene.beta * scene.initial()[0].max())
         method = replace(method, velocity=Uniform(64, 1.2 * float(bound)))
@@ -120,17 +126,22 @@ def largest_u(method: Macroscopic | Kinetic, fill: float, steps: int) -> float:
 
 def start(chapter: Chapter) -> None:
     """(26): the first step off the bound."""
-    scene = waves(ground(), 1.5, 3)
+    off, started, moved = zip(*(first_step(waves(ground(), 1.5, seed)) for seed in SEEDS), strict=True)
+    chapter.claim("(26): q after the first step less dt (g~ - beta h_x) mean h, over dt", max(off), high=1e-13)
+    chapter.claim("... which starts that many cells, fewest of all piles", min(started), low=1)
+    chapter.claim("... and leaves h, largest change", max(moved), high=4 * EPS)
+
+
+def first_step(scene: Scene) -> tuple[float, int, float]:
+    """Departure of q from (26) over dt, number of cells beyond the bound, change of h."""
     h, q = scene.initial()
     now = step(scene, Macroscopic(3), h, q, DT)
     ghosted = np.pad(h, 1, mode="edge")
     slope = scene.beta * (ghosted[2:] - ghosted[:-2]) / (2 * scene.cells.dx)
     held = np.clip(slope, scene.chute.sin - scene.resistance, scene.chute.sin + scene.resistance)
     mean = 0.25 * (ghosted[2:] + 2 * h + ghosted[:-2])
-    chapter.claim("(26): q after the first step less dt (g~ - beta h_x) mean h, over dt", np.abs(
-        now.q1 - DT * (held - slope) * mean).max() / DT, high=1e-13)  # fmt: skip
-    chapter.claim("... which starts that many cells", int((np.abs(held - slope) > 1e-12).sum()), low=1)
-    chapter.claim("... and leaves h, largest change", np.abs(now.h1 - h).max(), high=4 * EPS)
+    off = np.abs(now.q1 - DT * (held - slope) * mean).max() / DT
+    return float(off), int((np.abs(held - slope) > 1e-12).sum()), float(np.abs(now.h1 - h).max())
 
 
 def stop(chapter: Chapter) -> None:
@@ -209,7 +220,7 @@ def draw(fills: Array, speeds: dict[str, Array], peaks: dict[str, Run], zigzag: 
         one.semilogy(fills, np.maximum(values, 1e-18), color=COLOURS[number], marker=MARKS[number], markersize=5,
                      linewidth=1.4, label=name)  # fmt: skip
     one.axvline(1, ymax=0.8, color="0.6", linewidth=1)
-    one.set_title("random piles: largest |u|", loc="left", fontsize=10)
+    one.set_title("five random piles: largest |u|", loc="left", fontsize=10)
     one.set(xlabel="steepest slope over what friction holds", ylim=(1e-19, 1e5))
     one.legend(frameon=False, fontsize=8, ncols=2, loc="upper left")
     for number, (name, run_) in enumerate(peaks.items()):

@@ -52,6 +52,10 @@ class Case:
     wet: bool = True
     rests: bool = False
 
+    def settled(self, scheme: int, number: float | None) -> bool:
+        """Whether it does not rest, or rests under a scheme that knows rest, at a Courant number that keeps it."""
+        return not self.rests or (scheme > 1 and (number is None or number < UNSTABLE))
+
     def scene(self, count: int) -> Scene:
         """The start, on `count` cells."""
         return scene_of(self.exact, Cells(-5, 9, count), BETA)
