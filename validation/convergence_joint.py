@@ -27,7 +27,7 @@ CELLS, NODES = 56, 24
 
 def main(chapter: Chapter) -> None:
     """Both schemes at four time steps."""
-    levels = halvings(1, 5 if chapter.full else 3)
+    levels = halvings(1, 4 if chapter.full else 3)
     rows = [[orders(chapter, scheme, clock, levels) for clock in CLOCKS] for scheme in (1, 3)]
     chapter.figure(picture(rows, "dx, which dt and dxi follow", "L1(h)", (0.5, 1.0, 2.0)), "errors",
                    "Kinetic wing against exact solutions; dx, dt and dxi are halved together.")  # fmt: skip
