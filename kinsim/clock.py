@@ -55,6 +55,8 @@ class Courant:
         if left <= 0.0:
             return None
         dt = self.number * dx / speed if speed > 0.0 else math.inf
+        while dt / dx * speed > self.number:  # by rounding
+            dt = math.nextafter(dt, 0.0)
         return left if dt >= left else dt
 
     def time_after(self, step: int, t: float, dt: float) -> float:

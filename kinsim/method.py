@@ -7,28 +7,42 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from .balance.scheme4 import Limiter
 from .balance.schemes import Coupling
 from .kinetic.equilibrium import EQUILIBRIA, EquilibriumName
 from .kinetic.force import ForceName
 from .kinetic.project import ProjectionName
-from .kinetic.velocity import Fitted, Uniform, Velocity
+from .kinetic.velocity import Fitted, Uniform, Velocity, Window
 from .value import kind, value
 
-SchemeNumber = Literal[1, 2, 3]
+SchemeNumber = Literal[1, 2, 3, 4]
+Order = Literal[1, 2]
+
+Statics = Literal["hold", "reflect"]
 
 
 @value
 class Macroscopic:
-    """Schemes 1, 2 and 3 of the paper with closed-form fluxes.
+    """Schemes 1 to 4 with closed-form fluxes.
 
     Attributes:
-        scheme: 1 upwind and sliding, 2 balanced and stopping, 3 coupled.
+        scheme: 1 upwind and sliding, 2 balanced and stopping, 3 coupled: the paper's; 4, ours: conservative, positive,
+            at rest and on dry ground.
         coupling: Of scheme 3: "cell", the paper's, each cell has its fluxes; "face", one flux per face, conservative.
+        order: Of scheme 4: 1, or 2 in space and time.
+        limiter: Of order 2: "minmod", "between", or "mc", the sharpest, which ripples at strong shocks.
+        statics: Of order 1 of scheme 4: faces that friction can hold "hold" back density, or "reflect" particles.
     """
 
-    scheme: SchemeNumber = 3
+    scheme: SchemeNumber = 4
     coupling: Coupling = "cell"
+    order: Order = 1
+    limiter: Limiter = "between"
+    statics: Statics = "hold"
     kind: Literal["macroscopic"] = kind("macroscopic")
+
+    def __post_init__(self) -> None:
+        _check_scheme(self)
 
 
 @value
@@ -36,24 +50,36 @@ class Kinetic:
     """The same schemes carried by a density f(x, xi) on a velocity grid, (18) to (25).
 
     Attributes:
-        scheme: 1 upwind and sliding, 2 balanced and stopping, 3 coupled.
+        scheme: 1 upwind and sliding, 2 balanced and stopping, 3 coupled: the paper's; 4, ours: conservative, positive,
+            at rest and on dry ground.
         velocity: Where the density lives: `Uniform`, `Window` or `Fitted`.
         equilibrium: How M stands on the grid: "cell-average", "sampled", "matched" or "entropic".
         force: How the impulse moves f: "shift-linear", "shift-exact", "shift-pfc" of (23), "derivative-upwind" or
             "derivative-centred" of (18).
         projection: How U comes out of f: "flux-difference" or "re-summed".
         coupling: Of scheme 3: "cell", the paper's, each cell has its fluxes; "face", one flux per face, conservative.
+        order: Of scheme 4: 1, or 2 in space and time.
+        limiter: Of order 2: "minmod", "between", or "mc", the sharpest, which ripples at strong shocks.
+        statics: Of order 1 of scheme 4: faces that friction can hold "hold" back density, or "reflect" particles.
     """
 
-    scheme: SchemeNumber = 3
+    scheme: SchemeNumber = 4
     velocity: Velocity = Uniform()
     equilibrium: EquilibriumName = "cell-average"
     force: ForceName = "shift-linear"
     projection: ProjectionName = "flux-difference"
     coupling: Coupling = "cell"
+    order: Order = 1
+    limiter: Limiter = "between"
+    statics: Statics = "hold"
     kind: Literal["kinetic"] = kind("kinetic")
 
     def __post_init__(self) -> None:
+        _check_scheme(self)
+        if self.order == 2 and isinstance(self.velocity, Window):
+            raise ValueError("order 2 takes its two stages on one grid; take uniform or fitted nodes, not a window")
+        if self.order == 2 and (self.projection != "flux-difference" or self.force == "shift-exact"):
+            raise ValueError("order 2 averages densities on one grid: flux-difference, and a shift that moves no nodes")
         plain = ("cell-average", "shift-linear", "flux-difference")
         if isinstance(self.velocity, Fitted):
             if (self.equilibrium, self.force, self.projection) != plain:
@@ -75,7 +101,7 @@ class Kinetic:
     @property
     def twin(self) -> Macroscopic:
         """The same scheme in closed form."""
-        return Macroscopic(scheme=self.scheme, coupling=self.coupling)
+        return Macroscopic(self.scheme, self.coupling, self.order, self.limiter, self.statics)
 
     def within(self, bound: float) -> Kinetic:
         """The same method with the velocity window [-bound, bound], if it has none yet."""
@@ -90,3 +116,16 @@ class Kinetic:
 
 
 Method = Annotated[Kinetic | Macroscopic, Field(discriminator="kind")]
+
+
+def _check_scheme(method: Kinetic | Macroscopic) -> None:
+    """Refuse keys that the scheme does not read."""
+    plain = Macroscopic.__dataclass_fields__
+    for name, belongs, read in (
+        ("order", "scheme 4", method.scheme == 4),
+        ("limiter", "order 2 of scheme 4", method.order == 2),
+        ("statics", "order 1 of scheme 4", method.scheme == 4 and method.order == 1),
+    ):
+        asked = getattr(method, name)
+        if not read and asked != plain[name].default:
+            raise ValueError(f"{name} = {asked!r} belongs to {belongs}; leave it out, or take that")

@@ -122,11 +122,15 @@ def change(keys: dict[str, Any], settings: Sequence[str]) -> None:
         table[last] = _toml_value(text)
 
 
+SHARED = ("scheme", "coupling", "order", "limiter", "statics")
+"""Keys of a method that both wings have."""
+
+
 def take_method(keys: dict[str, Any], kind: str) -> None:
-    """Make `kind` the method; scheme and coupling stay."""
+    """Make `kind` the method; its scheme stays."""
     method = keys.get("method", {})
     if isinstance(method, dict) and method.get("kind", "kinetic") != kind:
-        keys["method"] = {"kind": kind, **{key: method[key] for key in ("scheme", "coupling") if key in method}}
+        keys["method"] = {"kind": kind, **{key: method[key] for key in SHARED if key in method}}
 
 
 def read_dumps(requests: Sequence[str]) -> list[Dump]:

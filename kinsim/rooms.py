@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 from typing import Any, NamedTuple, get_args
 
+from .balance.scheme4 import Held, HeldSloped, Reflecting
 from .balance.schemes import Scheme1, Scheme2, Scheme3Cell, Scheme3Face
 from .clock import Courant, Fixed
 from .kinetic.equilibrium import EQUILIBRIA
@@ -28,7 +29,10 @@ class Room(NamedTuple):
 
 def rooms() -> list[Room]:
     """All variants, family by family."""
-    schemes = {"1": Scheme1, "2": Scheme2, "3, coupling cell": Scheme3Cell, "3, coupling face": Scheme3Face}
+    schemes: dict[str, type] = {
+        "1": Scheme1, "2": Scheme2, "3, coupling cell": Scheme3Cell, "3, coupling face": Scheme3Face,
+        "4": Held, "4, order 2": HeldSloped, "4, statics reflect": Reflecting,
+    }  # fmt: skip
     return [
         *_by_kind("chute.kind", ConstantSlope),
         *_by_kind("friction.kind", *_variants(Friction)),

@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from .balance.scheme4 import Held
 from .balance.stages import Array
 from .clock import AnyClock, Courant, Fixed, Replay
 from .errors import InputError
@@ -17,7 +18,7 @@ from .kinetic.wing import Density
 from .method import Kinetic, Macroscopic
 from .run import Run, Verdict, VerdictKind
 from .scene import Scene
-from .step import Stepper
+from .stepper import make_stepper
 from .watch.causes import Causes
 from .watch.dump import Dump, Recorder
 from .watch.ledger import Ledger, Survey, survey
@@ -127,7 +128,7 @@ class _Loop:
         self.fastest = survey(self.h, self.q, scene.beta)[2]
         self.first_reach = self.reached = 0.0
         self.outside = ""
-        self.stepper = Stepper(scene, method)
+        self.stepper = make_stepper(scene, method)
         self.ledger = Ledger(scene, self.stepper)
         self.recorders: list[Recorder] = []
         self.causes: Causes | None = None
@@ -146,6 +147,12 @@ class _Loop:
                     "dumps and causes need a density on a velocity grid: take Kinetic with Uniform or Window"
                 )
             return
+        if self.stepper.limit < 1.0 and causes:
+            raise InputError(
+                "the moment ledger follows one stage; order 2 takes two: take order 1, or leave out causes"
+            )
+        if any(dump.stage == "held" for dump in dumps) and type(self.stepper.scheme) is not Held:
+            raise InputError('a dump of the stage "held" needs faces that hold: take scheme 4 of order 1')
         self.recorders = [Recorder(dump, self.scene, density) for dump in dumps]
         if causes:
             self.causes = Causes(self.scene, self.stepper, density)
@@ -166,10 +173,13 @@ class _Loop:
                 asked = f"velocities up to {max(speed, self.fastest):.3g} ask for steps of dt = {dt:.3g}"
                 return self.verdict("cfl-broken", f"{asked}, too short to come to t = {clock.end:g}; stopped")
             courant = speed * dt / dx
-            if courant > 1.0 + ROUNDING and not self.force:
+            if courant > stepper.limit * (1.0 + ROUNDING) and not self.force:
                 if self.step == 0:
-                    raise InputError(_over_the_bound(courant, dt, dx / speed, clock))
-                return self.verdict("cfl-broken", f"{_over_the_bound(courant, dt, dx / speed, clock)}; stopped")
+                    raise InputError(_over_the_bound(courant, dt, stepper.limit * dx / speed, clock, stepper.limit))
+                return self.verdict(
+                    "cfl-broken",
+                    f"{_over_the_bound(courant, dt, stepper.limit * dx / speed, clock, stepper.limit)}; stopped",
+                )
             self.reached = max(self.reached, reach)
             cut = self._cut(stepper.density, reach)
             if cut is None:
@@ -197,7 +207,7 @@ class _Loop:
         ledger = self.ledger
         where = f"step {self.step + 1}: " if kind in ("non-finite", "cfl-broken", "window-too-small") else ""
         notes = [f"{where}{message} at t = {self.t:.6g} after {self.step} steps"]
-        if ledger.worst_courant > 1.0 + ROUNDING:
+        if ledger.worst_courant > self.stepper.limit * (1.0 + ROUNDING):
             notes.append(f"the CFL bound was broken on demand, Courant number up to {ledger.worst_courant:.3g}")
         if self.outside and kind != "window-too-small":
             notes.append(f"{self.outside}, what is outside was left out and booked")
@@ -238,7 +248,7 @@ class _Loop:
         """Take over a good step; says whether it is the last one."""
         last = self.clock.next_dt(self.step + 1, after, 0.0, self.scene.cells.dx) is None
         for recorder in self.recorders:
-            recorder.record(self.step + 1, self.t, after, last)
+            recorder.record(self.stepper.now, self.step + 1, self.t, after, last)
         if self.causes:
             self.causes.note(h1, q1, dt)
         self.h[:], self.q[:] = h1, q1
@@ -265,7 +275,8 @@ class _Loop:
             self.causes.save(self.t, self.h, self.q)
 
 
-def _over_the_bound(courant: float, dt: float, allowed: float, clock: AnyClock) -> str:
-    remedy = f"take dt <= {allowed:.4g}" if isinstance(clock, Fixed) else "take a Courant number of at most 1"
-    broken = f"dt = {dt:.4g} breaks the CFL bound (28): Courant number {courant:.4g}"
+def _over_the_bound(courant: float, dt: float, allowed: float, clock: AnyClock, limit: float) -> str:
+    remedy = f"take dt <= {allowed:.4g}" if isinstance(clock, Fixed) else f"take a Courant number of at most {limit:g}"
+    bound = "the CFL bound (28)" if limit == 1.0 else f"the CFL bound of order 2, {limit:g}"
+    broken = f"dt = {dt:.4g} breaks {bound}: Courant number {courant:.4g}"
     return f"{broken}; {remedy}, or force it (--force, force=True)"

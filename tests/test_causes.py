@@ -22,7 +22,7 @@ from kinsim import (
 from kinsim.kinetic.equilibrium import EQUILIBRIA, EquilibriumName
 from kinsim.kinetic.force import FORCES, ForceName
 from kinsim.kinetic.project import PROJECTIONS, ProjectionName
-from kinsim.step import Stepper
+from kinsim.stepper import Stepper
 
 CUT = Uniform(48, 1.25, "warn")
 

@@ -11,7 +11,7 @@ from conftest import SCENES
 from kinsim import Courant, Fixed, InputError, Kinetic, Macroscopic, Uniform, compare, simulate
 
 SILO = SCENES["silo"][0]
-KINETIC = Kinetic(velocity=Uniform(32))
+KINETIC = Kinetic(3, Uniform(32))
 
 
 def test_differences_are_those_of_the_runs():

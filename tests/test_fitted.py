@@ -16,7 +16,7 @@ from kinsim import (
 )
 from kinsim.kinetic.fitted import gauss_jacobi, half_moments_fitted
 from kinsim.macroscopic.half_moments import half_moments_closed
-from kinsim.step import Stepper
+from kinsim.stepper import Stepper
 
 
 def moments(h: np.ndarray, u: np.ndarray) -> np.ndarray:

@@ -40,7 +40,9 @@ def example(kernel: object) -> list[object]:
         kind = parameter.annotation
         if name in two and kind == "Array":
             arguments.append(
-                dice.uniform(0.1, 1.0, (nx + (2 if name == "M" and name_of == "transport" else 0) + (name == "B"), n))
+                dice.uniform(
+                    0.1, 1.0, (nx + (2 if name == "M" and name_of.startswith("transport") else 0) + (name == "B"), n)
+                )
             )
         elif name == "xi":
             arguments.append(np.linspace(-0.7, 0.7, n))
@@ -70,7 +72,7 @@ def example(kernel: object) -> list[object]:
         elif kind == "Array":
             arguments.append(dice.uniform(0.1, 1.0, nx))
         elif kind == "Flags":
-            arguments.append(dice.random(nx) < 0.5)
+            arguments.append(dice.random(nx + (name == "static")) < 0.5)
         elif kind == "NDArray[np.int64]":
             arguments.append(np.zeros(nx, dtype=np.int64))
         elif kind == "bool":

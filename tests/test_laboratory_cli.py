@@ -101,7 +101,7 @@ def test_densities_need_a_grid() -> None:
 def test_seams_are_differences_of_the_same_step(tmp_path: Path) -> None:
     """Every stage is there, and the state differs by no more than the fluxes let it; the picture is made."""
     scene, _, _ = load_scene("silo")
-    method = Kinetic(velocity=Uniform(64))
+    method = Kinetic(3, Uniform(64))
     measured = compare(scene, [method, method.twin], Fixed(1e-3, 60), 20, seams=True)
     assert all(f"seam_{stage}" in measured for stage in STAGES)
     half = float(np.abs(measured["seam_half"]).max())

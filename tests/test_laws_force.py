@@ -21,7 +21,7 @@ from kinsim import (
 from kinsim.kinetic.equilibrium import EQUILIBRIA, EquilibriumName
 from kinsim.kinetic.force import FORCES, ForceName
 from kinsim.kinetic.project import PROJECTIONS, ProjectionName
-from kinsim.step import Stepper
+from kinsim.stepper import Stepper
 
 CONSERVATIVE = {"shift-linear", "shift-exact"}
 """Shifts that are exact in mass and momentum of f, whatever f is."""

@@ -29,6 +29,7 @@ from kinsim import (
     Sine,
     Table,
     Uniform,
+    Window,
 )  # fmt: skip
 from kinsim.model.boundary import extend, extend_flag
 
@@ -176,7 +177,11 @@ BAD = [
     (lambda: Uniform(7), "odd"),
     (lambda: Uniform(0), "count"),
     (lambda: Uniform(8, 0.0), "bound"),
-    (lambda: Macroscopic(4), "scheme"),
+    (lambda: Macroscopic(5), "scheme"),
+    (lambda: Macroscopic(3, order=2), "belongs to scheme 4"),
+    (lambda: Kinetic(4, limiter="mc"), "belongs to order 2"),
+    (lambda: Kinetic(4, Window(0.1), order=2), "one grid"),
+    (lambda: Macroscopic(4, order=2, statics="reflect"), "belongs to order 1"),
     (lambda: Macroscopic(3, "both"), "coupling"),
     (lambda: Kinetic(equilibrium="exact"), "equilibrium"),
     (lambda: Table("nowhere.csv"), "nowhere.csv"),

@@ -9,7 +9,7 @@ from conftest import SCENES
 from kinsim import Dump, Fixed, InputError, Kinetic, Macroscopic, Uniform, simulate
 from kinsim.plot import draw, plot_run, telling_rows
 
-METHODS = {"kinetic": Kinetic(velocity=Uniform(32)), "macroscopic": Macroscopic()}
+METHODS = {"kinetic": Kinetic(3, Uniform(32)), "macroscopic": Macroscopic(3)}
 SIGNATURES = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}
 
 
@@ -59,7 +59,7 @@ def test_the_density_fills_its_support(name):
 
 def test_a_density_of_another_stage_or_time_is_not_shown_as_the_last():
     before_the_force = small_run(METHODS["kinetic"], dumps=[Dump(stage="transport")])
-    narrow = [Kinetic(velocity=Uniform(32, bound)) for bound in (1.0, 1.5)]
+    narrow = [Kinetic(3, Uniform(32, bound)) for bound in (1.0, 1.5)]
     stopped = [small_run(method, dumps=[Dump()]) for method in narrow]
     assert [run.dumps["f"].sizes["t"] for run in stopped] == [0, 1]
     assert stopped[1].steps > 1

@@ -50,7 +50,7 @@ BAD = {
     "wrong type of a count": ("count = 20", "count = 20.5", "cells.count: should be a valid integer, got 20.5"),
     "wrong type of a list": ("edges = [-1, 1]", 'edges = "-1"', "heap.edges: should be a valid list, got '-1'"),
     "key given twice": ("k = 1.0", "k = 1.0\nk = 2.0", "is not TOML"),
-    "no scheme 4": ("scheme = 3", "scheme = 4", "method.scheme: should be 1, 2 or 3, got 4"),
+    "no scheme 5": ("scheme = 3", "scheme = 5", "method.scheme: should be 1, 2, 3 or 4, got 5"),
     "missing key": ("count = 20", "", "cells.count: missing; give it a value"),
     "unreadable TOML": ("k = 1.0", "k = = 1.0", "is not TOML: Invalid value (at line 4, column 5)"),
     "negative height": ("[0.3, 2.3, 0.3]", "[0.3, -2.3, 0.3]", "heap: height -2.3 at x = -0.9; heights are"),
@@ -207,7 +207,7 @@ def test_settings_change_keys(folder):
     assert file.cells.count == 40
     assert file.boundary == ("wall", "open")
     assert file.title == "a b"
-    assert file.method == Kinetic(velocity=Uniform(32))
+    assert file.method == Kinetic(3, Uniform(32))
 
 
 def test_settings_may_open_a_table():

@@ -31,9 +31,9 @@ class Faces:
         return cls(*(np.empty(nx + 1) for _ in range(4)))
 
 
-def upwind(h: Array, u: Array) -> Faces:
-    """(19): each side of a face is the cell on that side; views, nothing is copied."""
-    return Faces(h[:-1], u[:-1], h[1:], u[1:])
+def upwind(plus: tuple[Array, Array], minus: tuple[Array, Array]) -> Faces:
+    """(19): each side of a face is what the cell on that side shows, (h, u) ghosted; views, nothing is copied."""
+    return Faces(plus[0][:-1], plus[1][:-1], minus[0][1:], minus[1][1:])
 
 
 @kernel

@@ -12,18 +12,27 @@ from ..scene import Scene
 from .impulse import find_slow, sliding, stopping
 from .interface import Array, balanced
 from .stages import Flags, Stages
+from .update import Walls
+from .wing import Wing
 
 Coupling = Literal["cell", "face"]
 
 
 class Scheme(Protocol):
-    """A scheme reads fluxes from the stages and writes flags and impulse into them."""
+    """A scheme reads and writes the stages, in this order."""
 
     uses_balanced: bool
     """Whether the balanced face states (25) and their flux are needed."""
+    has_faces: bool
+    """Whether densities stand at faces that are not those of the cells."""
+    sloped: bool
+    """Whether cells show other states at their walls than their own: second order."""
 
-    def choose(self, scene: Scene, now: Stages, dt: float) -> None:
-        """Write `at_left` and `at_right`: where cells take the balanced flux."""
+    def prepare(self, scene: Scene, now: Stages, fastest: float) -> None:
+        """Write what cells show to their walls; slopes that make particles faster than `fastest` are left out."""
+
+    def fluxes(self, scene: Scene, now: Stages, wing: Wing, dt: float) -> Walls:
+        """The fluxes that each cell takes at its walls."""
 
     def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
         """Write `J`; `pulled`, shape (nx,), is the height that the force acts on."""
@@ -32,22 +41,40 @@ class Scheme(Protocol):
 class Scheme1:
     """Upwind faces (19) and sliding friction; never rests."""
 
-    uses_balanced = False
+    uses_balanced = has_faces = sloped = False
 
-    def choose(self, scene: Scene, now: Stages, dt: float) -> None:
+    def prepare(self, scene: Scene, now: Stages, fastest: float) -> None:
+        pass
+
+    def fluxes(self, scene: Scene, now: Stages, wing: Wing, dt: float) -> Walls:
         now.at_left[:] = now.at_right[:] = False
+        wing.upwind_flux(now)
+        return Walls.of(now.F1, now.F2)
 
     def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
         sliding(now.h, now.u, pulled, scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx, dt, now.J)
 
 
-class Scheme2:
+class Scheme2(Scheme1):
     """Balanced faces (25) everywhere; slow cells stop and start, (21), (22)."""
 
-    uses_balanced = True
+    uses_balanced = has_faces = True
 
-    def choose(self, scene: Scene, now: Stages, dt: float) -> None:
-        _judge(scene, now, dt)
+    def fluxes(self, scene: Scene, now: Stages, wing: Wing, dt: float) -> Walls:
+        to = now.balanced
+        balanced(now.h, now.u, to.h_left, to.u_left, to.h_right, to.u_right)
+        wing.upwind_flux(now)
+        wing.balanced_flux(now)
+        candidate(now.h, now.B1, dt / scene.cells.dx, now.h1_candidate)
+        find_slow(now.q, now.h1_candidate, scene.chute.sin, scene.resistance, dt, now.slow[1:-1])
+        extend_flag(scene.boundary, now.slow)
+        self.choose(now)
+        F, B = Walls.of(now.F1, now.F2), Walls.of(now.B1, now.B2)
+        at = (now.at_left, now.at_left, now.at_right, now.at_right)
+        return Walls(*(np.where(flag, b, f) for flag, b, f in zip(at, B, F, strict=True)))
+
+    def choose(self, now: Stages) -> None:
+        """Write `at_left` and `at_right`: where cells take the balanced flux."""
         now.at_left[:] = now.at_right[:] = True
 
     def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
@@ -59,40 +86,16 @@ class Scheme2:
 class Scheme3Cell(Scheme2):
     """Scheme 3 by cell, the paper's: slow cells take balanced fluxes, the others upwind ones; not conservative."""
 
-    def choose(self, scene: Scene, now: Stages, dt: float) -> None:
-        _judge(scene, now, dt)
+    def choose(self, now: Stages) -> None:
         now.at_left[:] = now.at_right[:] = now.slow[1:-1]
 
 
 class Scheme3Face(Scheme2):
     """Scheme 3 by face: one flux per face, balanced where both its cells are slow; conservative."""
 
-    def choose(self, scene: Scene, now: Stages, dt: float) -> None:
-        _judge(scene, now, dt)
+    def choose(self, now: Stages) -> None:
         np.logical_and(now.slow[:-2], now.slow[1:-1], out=now.at_left)
         np.logical_and(now.slow[1:-1], now.slow[2:], out=now.at_right)
-
-
-def make_scheme(scheme: int, coupling: Coupling, scene: Scene) -> Scheme:
-    """The scheme by its number; without any force no cell is slow, so that scheme 3 is scheme 1."""
-    if scheme == 1 or (scheme == 3 and not scene.forced):
-        return Scheme1()
-    if scheme == 2:
-        return Scheme2()
-    return Scheme3Cell() if coupling == "cell" else Scheme3Face()
-
-
-def balanced_faces(now: Stages) -> None:
-    """Write the face states (25)."""
-    to = now.balanced
-    balanced(now.h, now.u, to.h_left, to.u_left, to.h_right, to.u_right)
-
-
-def _judge(scene: Scene, now: Stages, dt: float) -> None:
-    """Write the candidate h^{n+1} of the balanced flux, and who is slow by it."""
-    candidate(now.h, now.B1, dt / scene.cells.dx, now.h1_candidate)
-    find_slow(now.q, now.h1_candidate, scene.chute.sin, scene.resistance, dt, now.slow[1:-1])
-    extend_flag(scene.boundary, now.slow)
 
 
 @kernel
@@ -102,4 +105,4 @@ def candidate(h: Array, B1: Array, lam: float, h1: Array) -> None:
         h1[i] = h[i + 1] - lam * (B1[i + 1] - B1[i])
 
 
-__all__ = ["Coupling", "Flags", "Scheme", "balanced_faces", "make_scheme"]
+__all__ = ["Coupling", "Flags", "Scheme"]

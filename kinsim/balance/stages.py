@@ -23,9 +23,16 @@ class Stages:
     Attributes:
         h, u: Height and velocity at level n, ghosted.
         q: Momentum at level n, cells.
-        upwind, balanced: Face states (19) and (25).
-        F1, F2: Flux of the upwind states, faces.
-        B1, B2: Flux of the balanced states, faces.
+        minus, plus: What a cell shows to its left and to its right wall, (h, u), ghosted; views of h and u unless the
+            scheme has slopes.
+        upwind: Face states (19), views of `plus` and `minus`.
+        balanced: Face states (25), or the held ones of scheme 4.
+        F1, F2: Flux of the upwind states, faces; in scheme 4 the one flux.
+        B1, B2: Flux of the balanced states, faces; with reflection the flux seen from the right of a face.
+        e, theta: The jump of height that friction can balance, and the share of it that is held, faces.
+        held, still, static: Faces that hold something back, that are at rest, that reflect.
+        leftover: Friction that a face has to spare, faces.
+        low, high: The slowest and the fastest particle, ghosted; inf and -inf where it is dry.
         h1_candidate: h^{n+1} as the balanced flux would give it, cells.
         slow: Cells that take the first branch of schemes 2 and 3, ghosted.
         at_left, at_right: Whether a cell takes the balanced flux at its left and right wall, cells.
@@ -38,12 +45,22 @@ class Stages:
     h: Array
     u: Array
     q: Array
+    minus: tuple[Array, Array]
+    plus: tuple[Array, Array]
     upwind: Faces
     balanced: Faces
     F1: Array
     F2: Array
     B1: Array
     B2: Array
+    e: Array
+    theta: Array
+    leftover: Array
+    held: Flags
+    still: Flags
+    static: Flags
+    low: Array
+    high: Array
     h1_candidate: Array
     slow: Flags
     at_left: Flags
@@ -54,14 +71,20 @@ class Stages:
     q1: Array
 
     @classmethod
-    def empty(cls, nx: int) -> Stages:
-        """Room for a step of `nx` cells."""
+    def empty(cls, nx: int, sloped: bool = False) -> Stages:
+        """Room for a step of `nx` cells; `sloped` if cells show other states at their walls than their own."""
         h, u = np.zeros(nx + 2), np.zeros(nx + 2)
+        minus = plus = (h, u)
+        if sloped:
+            minus, plus = ((np.zeros(nx + 2), np.zeros(nx + 2)) for _ in range(2))
         cells = {name: np.zeros(nx) for name in ("q", "h1_candidate", "h1", "qhat", "J", "q1")}
-        faces = {name: np.zeros(nx + 1) for name in ("F1", "F2", "B1", "B2")}
+        faces = {name: np.zeros(nx + 1) for name in ("F1", "F2", "B1", "B2", "e", "theta", "leftover")}
+        held, still, static = (np.zeros(nx + 1, dtype=bool) for _ in range(3))
         return cls(
-            h=h, u=u, upwind=upwind(h, u), balanced=Faces.empty(nx), slow=np.zeros(nx + 2, dtype=bool),
-            at_left=np.zeros(nx, dtype=bool), at_right=np.zeros(nx, dtype=bool), **cells, **faces,
+            h=h, u=u, minus=minus, plus=plus, upwind=upwind(plus, minus),
+            balanced=Faces.empty(nx), low=np.zeros(nx + 2), high=np.zeros(nx + 2), slow=np.zeros(nx + 2, dtype=bool),
+            at_left=np.zeros(nx, dtype=bool), at_right=np.zeros(nx, dtype=bool), held=held, still=still, static=static,
+            **cells, **faces,
         )  # fmt: skip
 
     def begin(self, scene: Scene, h: Array, q: Array) -> None:
@@ -77,6 +100,21 @@ def split(h: Array, q: Array, h_ghosted: Array, u_ghosted: Array) -> None:
     for i in range(h.size):
         h_ghosted[i + 1] = h[i]
         u_ghosted[i + 1] = q[i] / h[i] if h[i] > 0.0 else 0.0
+
+
+def reach(now: Stages, beta: float, balanced: bool) -> float:
+    """max(|u| + c) over all that the cells show, and with `balanced` over the face states (25)."""
+    shown = fastest(*now.plus, beta, balanced)
+    return shown if now.minus is now.plus else max(shown, fastest(*now.minus, beta, False))
+
+
+@kernel
+def support(h: Array, u: Array, beta: float, low: Array, high: Array) -> None:
+    """The slowest and the fastest particle u -+ c of each cell, inf and -inf where it is dry."""
+    for i in range(h.size):
+        c = np.sqrt(2.0 * beta * h[i])
+        low[i] = u[i] - c if h[i] > 0.0 else np.inf
+        high[i] = u[i] + c if h[i] > 0.0 else -np.inf
 
 
 @kernel

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from ..balance.interface import Faces
 from ..balance.sides import both_sides
-from ..balance.stages import Stages, fastest
+from ..balance.stages import Stages
+from ..balance.wing import WithoutDensity
 from ..kernel import kernel
 from ..scene import Scene
 
@@ -64,40 +65,28 @@ def flux_fitted(
         F2[i] = p2 + n2
 
 
-class FittedMeasure:
-    """The kinetic wing on fitted nodes: a few point masses per cell instead of a row of a grid."""
+@kernel
+def half_moments_of_cells(h: Array, u: Array, beta: float, s: Array, W: Array, out: Array) -> None:
+    """The same moments of every cell, into `out` of shape (4, h.size)."""
+    for i in range(h.size):
+        out[0, i], out[1, i], out[2, i], out[3, i] = half_moments_fitted(h[i], u[i], beta, s, W)
+
+
+class FittedMeasure(WithoutDensity):
+    """The kinetic wing on fitted nodes: a few point masses per cell instead of a row of a grid.
+
+    Nodes of neighbours differ, so that transport is known by its moments; the force translates all nodes of a cell.
+    """
 
     def __init__(self, scene: Scene, count: int) -> None:
-        self._beta = scene.beta
+        super().__init__(scene)
         self._s, self._W = gauss_jacobi(count)
-
-    def equilibrium(self, now: Stages) -> float:
-        """The measure is known by (h, u) alone; its fastest particle is |u| + c."""
-        return fastest(now.h, now.u, self._beta, False)
 
     def half_moments(self, now: Stages) -> Array:
         """Moments over xi > 0 and xi < 0 of each ghosted cell, shape (4, nx + 2)."""
-        pairs = zip(now.h, now.u, strict=True)
-        return np.array([half_moments_fitted(h, u, self._beta, self._s, self._W) for h, u in pairs]).T
-
-    def upwind_flux(self, now: Stages) -> None:
-        """F from the nodes of the upwind states, (19)."""
-        self._flux(now.upwind, now.F1, now.F2)
-
-    def balanced_flux(self, now: Stages) -> None:
-        """F~ from the nodes of the balanced states, (25)."""
-        self._flux(now.balanced, now.B1, now.B2)
-
-    def transport(self, now: Stages, lam: float) -> None:
-        """Nodes of neighbours differ: transport is known by its moments."""
-
-    def pulled(self, now: Stages) -> Array:
-        """h^{n+1}, (23)."""
-        return now.h1
-
-    def force(self, now: Stages) -> float:
-        """A translation of all nodes; nothing is lost."""
-        return 0.0
+        out = np.empty((4, now.h.size))
+        half_moments_of_cells(now.h, now.u, self._beta, self._s, self._W, out)
+        return out
 
     def measure(self, h: Array, u: Array) -> tuple[Array, Array]:
         """Nodes and masses of the smaller side of each cell, each of shape (nx, count), for h, u of shape (nx,)."""

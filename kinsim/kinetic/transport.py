@@ -49,6 +49,37 @@ def transport(M: Array, B: Array, at_left: Flags, at_right: Flags, xi: Array, la
 
 
 @kernel
+def transport_reflecting(M: Array, static: Flags, xi: Array, lam: float, f: Array) -> None:
+    """The same with upwind faces, where static faces, shape (nx + 1,), send the particles of a cell back into it."""
+    n = xi.size
+    half = n // 2
+    for i in range(f.shape[0]):
+        for j in range(n):
+            outgoing = lam * abs(xi[j])
+            back = static[i + 1] if j < half else static[i]
+            if back:
+                coming = M[i + 1, n - 1 - j]
+            else:
+                coming = M[i + 2, j] if j < half else M[i, j]
+            f[i, j] = (M[i + 1, j] - outgoing * M[i + 1, j]) + outgoing * coming
+
+
+@kernel
+def occupied(M: Array, dxi: float, low: Array, high: Array) -> None:
+    """The outermost nodes at which each row of M is not zero, inf and -inf in a row of zeros."""
+    n = M.shape[1]
+    half = n // 2
+    for i in range(M.shape[0]):
+        first, last = 0, n - 1
+        while first < n and M[i, first] == 0.0:
+            first += 1
+        while last >= first and M[i, last] == 0.0:
+            last -= 1
+        low[i] = (first - half + 0.5) * dxi if first < n else np.inf
+        high[i] = (last - half + 0.5) * dxi if last >= first else -np.inf
+
+
+@kernel
 def outermost(M: Array, dxi: float) -> float:
     """The outermost node |xi_j| at which M is not zero, 0 if it is zero everywhere."""
     n = M.shape[1]

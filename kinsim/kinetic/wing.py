@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..balance.interface import Faces
-from ..balance.stages import Array, Stages, fastest
+from ..balance.schemes import Scheme
+from ..balance.stages import Array, Stages, reach
 from ..scene import Scene
 from .equilibrium import Equilibrium, Status
 from .equilibrium.averages import mass_outside
 from .force import Force
-from .transport import half_sums, outermost, transport
+from .transport import half_sums, occupied, outermost, transport, transport_reflecting
 from .velocity import Grid, Uniform, Window
 
 
@@ -20,7 +21,7 @@ class Density:
     Attributes:
         grid: The velocity cells.
         M: Equilibrium M(h, xi - u) at level n, ghosted, shape (nx + 2, n).
-        B: Density at balanced faces, shape (nx + 1, n), or empty where the scheme has none.
+        B: Density at balanced or held faces, shape (nx + 1, n), or empty where the scheme has none.
         transported: f after transport, shape (nx, n).
         f: f after the force, shape (nx, n).
         offset: How far the force moved the nodes of each row of f, shape (nx,); 0 where it moved the values.
@@ -31,14 +32,14 @@ class Density:
     """
 
     def __init__(
-        self, scene: Scene, velocity: Uniform | Window, equilibrium: Equilibrium, force: Force, uses_balanced: bool
+        self, scene: Scene, velocity: Uniform | Window, equilibrium: Equilibrium, force: Force, scheme: Scheme
     ) -> None:
         self._beta = scene.beta
         self._forced = scene.forced
         self._velocity = velocity
         self._equilibrium = equilibrium
         self._force = force
-        self._uses_balanced = uses_balanced
+        self._scheme = scheme
         self._nx = nx = scene.cells.count
         self.offset = np.zeros(nx)
         self.status = Status.empty(nx + 2)
@@ -56,7 +57,8 @@ class Density:
         self.xi = grid.xi
         self._w1, self._w2 = self._equilibrium.weights(grid)
         self.M = np.zeros((nx + 2, n))
-        self.B = np.zeros((nx + 1 if self._uses_balanced else 0, n))
+        self.B = np.zeros((nx + 1 if self._scheme.has_faces else 0, n))
+        self._minus = np.zeros((nx + 2, n)) if self._scheme.sloped else self.M
         self.transported = np.zeros((nx, n))
         self.f = np.zeros((nx, n)) if self._forced else self.transported
 
@@ -68,11 +70,24 @@ class Density:
 
     def equilibrium(self, now: Stages) -> float:
         """M_i = M(h_i, xi - u_i), (12); returns its outermost occupied node."""
-        self.reach = fastest(now.h, now.u, self._beta, self._uses_balanced)
+        self.reach = reach(now, self._beta, self._scheme.uses_balanced)
         if not self._velocity.fits(self.grid, self.reach + self._room):
             self._allocate(self._velocity.grid(self.reach + self._room))
-        self.fill(now.h, now.u, now.h, now.u, self.M, self.status)
+        self.fill(*now.plus, *now.plus, self.M, self.status)
+        if self._scheme.sloped:
+            self._show_slopes(now)
         return outermost(self.M, self.grid.dxi)
+
+    def _show_slopes(self, now: Stages) -> None:
+        """Two halves of a cell show themselves at its walls; the density of the cell is their mean."""
+        half = self.grid.half
+        self.fill(*now.minus, *now.minus, self._minus, self.status)
+        self.B[:, half:], self.B[:, :half] = self.M[:-1, half:], self._minus[1:, :half]
+        np.multiply(0.5, self.M + self._minus, out=self.M)
+
+    def support(self, now: Stages) -> None:
+        """The outermost occupied nodes of each cell."""
+        occupied(self.M, self.grid.dxi, now.low, now.high)
 
     def half_moments(self, now: Stages) -> Array:
         """The half-range sums of M in each ghosted cell, shape (4, nx + 2)."""
@@ -95,12 +110,38 @@ class Density:
         np.add(P1, N1, out=now.B1)
         np.add(P2, N2, out=now.B2)
 
+    def held_flux(self, now: Stages) -> None:
+        """The one flux of scheme 4: sums of the cells' densities, and of a density of their own at held faces.
+
+        No face sends more than stands before it, rounding included.
+        """
+        half, at, sloped = self.grid.half, now.balanced, self._scheme.sloped
+        now.at_left[:], now.at_right[:] = now.held[:-1] | sloped, now.held[1:] | sloped
+        if not sloped:
+            self.upwind_flux(now)
+        where = np.flatnonzero(now.held)
+        rows, status = np.empty((where.size, self.grid.count)), Status.empty(where.size)
+        if where.size:
+            self.fill(at.h_left[where], at.u_left[where], at.h_right[where], at.u_right[where], rows, status)
+            most = 2.0 if sloped else 1.0
+            np.minimum(rows[:, half:], most * self.M[where, half:], out=rows[:, half:])
+            np.minimum(rows[:, :half], most * self.M[where + 1, :half], out=rows[:, :half])
+            self.B[where] = rows
+        self.face_status.put(where, status)
+        chosen = slice(None) if sloped else where
+        P1, P2, N1, N2 = np.empty((4, now.held[chosen].size))
+        half_sums(self.B[chosen], self._w1, self._w2, P1, P2, N1, N2)
+        now.F1[chosen], now.F2[chosen] = P1 + N1, P2 + N2
+
     def transport(self, now: Stages, lam: float) -> None:
         """f = M - lam xi (M_{i+1/2} - M_{i-1/2}), (23) before the shift; a window makes room for the shift."""
         self._room = lam * self._pull + self.grid.dxi
         if not self._velocity.fits(self.grid, self.reach + self._room):
             self._widen(self._velocity.grid(self.reach + self._room))
-        transport(self.M, self.B, now.at_left, now.at_right, self.xi, lam, self.transported)
+        if now.static.any():
+            transport_reflecting(self.M, now.static, self.xi, lam, self.transported)
+        else:
+            transport(self.M, self.B, now.at_left, now.at_right, self.xi, lam, self.transported)
 
     def pulled(self, now: Stages) -> Array:
         """h^{n+1} in (23), h^n in (18)."""
@@ -111,6 +152,20 @@ class Density:
         if self._forced:
             self.lost = self._push(self.transported, self.M[1:-1], now, self.f)
         return self.lost
+
+    def held(self, now: Stages) -> Array:
+        """What faces hold back of M, shape (nx, n): for xi > 0 at the right wall of a cell, for xi < 0 at the left."""
+        half, of_cells, at = self.grid.half, self.M[1:-1], now.held
+        out = np.zeros_like(of_cells)
+        np.subtract(of_cells[:, half:], self.B[1:, half:], out=out[:, half:], where=at[1:, None])
+        np.subtract(of_cells[:, :half], self.B[:-1, :half], out=out[:, :half], where=at[:-1, None])
+        return out
+
+    def average(self, M: Array) -> None:
+        """Mean of what a second stage made of f and of M, the density from which the first one started."""
+        np.multiply(0.5, M + self.f, out=self.f)
+        if self.f is not self.transported:
+            np.multiply(0.5, M + self.transported, out=self.transported)
 
     def cut(self, now: Stages) -> float:
         """The mass of M outside the window, per dx."""

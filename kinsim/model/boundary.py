@@ -40,3 +40,17 @@ def extend_flag(boundary: Boundary, flag: NDArray[np.bool_]) -> None:
     left, right = ends(boundary)
     flag[0] = flag[-2 if left == "periodic" else 1]
     flag[-1] = flag[1 if right == "periodic" else -2]
+
+
+def extend_shown(
+    boundary: Boundary,
+    minus: tuple[NDArray[np.float64], NDArray[np.float64]],
+    plus: tuple[NDArray[np.float64], NDArray[np.float64]],
+) -> None:
+    """Let the ghost cells show what stands on the other side of their face; (h, u) pairs of shape (nx + 2,)."""
+    left, right = ends(boundary)
+    for kind, at, to, across, beyond in ((left, 0, plus, minus, plus), (right, -1, minus, plus, minus)):
+        inner, far = (1, -2) if at == 0 else (-2, 1)
+        (h, u), (g, v), (k, w) = to, across, beyond
+        h[at] = k[far] if kind == "periodic" else g[inner]
+        u[at] = w[far] if kind == "periodic" else (-v[inner] if kind == "wall" else v[inner])

@@ -12,7 +12,7 @@ from ..kernel import kernel
 from ..kinetic.velocity import Grid
 from ..kinetic.wing import Density
 from ..scene import Scene
-from ..step import Stepper
+from ..stepper import Stepper
 
 if TYPE_CHECKING:
     import xarray

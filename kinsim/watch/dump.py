@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from ..balance.stages import Array
+from ..balance.stages import Array, Stages
 from ..errors import InputError
 from ..kinetic.velocity import Grid
 from ..value import Number, Whole, value
@@ -22,10 +22,11 @@ if TYPE_CHECKING:
 TAKEN = {"t", "x", "xi", "h", "q", "u", "stage", "quantity", *COLUMNS, *DENSITY_COLUMNS}
 """Names of other parts of a run."""
 
-Stage = Literal["equilibrium", "transport", "force"]
+Stage = Literal["equilibrium", "held", "transport", "force"]
 
 LONG_NAMES = {
     "equilibrium": "density M(h, xi - u) at the beginning of the step",
+    "held": "density that static friction holds back at the walls of its cell",
     "transport": "density after transport",
     "force": "density after the force",
 }
@@ -37,7 +38,8 @@ class Dump:
 
     Attributes:
         name: Its name in the run and in the file.
-        stage: "equilibrium" (M^n), "transport" (f before the shift) or "force" (f after it).
+        stage: "equilibrium" (M^n), "held" (the part of it that faces hold back in scheme 4), "transport" (f before the
+            shift) or "force" (f after it).
         every: Cadence in steps.
         x, xi: Windows (low, high), or None for all.
     """
@@ -71,14 +73,17 @@ class Recorder:
         self._offsets: list[Array] = []
         self._last = -1
 
-    def record(self, step: int, before: float, after: float, final: bool = False) -> None:
+    def record(self, now: Stages, step: int, before: float, after: float, final: bool = False) -> None:
         """Keep the density of step number `step` (counted from 1), from time `before` to `after`, if it is due."""
         if step == self._last or not (final or step == 1 or step % self.dump.every == 0):
             return
         self._last = step
         stage, density = self.dump.stage, self._density
-        self._times.append(before if stage == "equilibrium" else after)
-        whole = {"equilibrium": density.M[1:-1], "transport": density.transported, "force": density.f}[stage]
+        self._times.append(before if stage in ("equilibrium", "held") else after)
+        if stage == "held":
+            whole = density.held(now)
+        else:
+            whole = {"equilibrium": density.M[1:-1], "transport": density.transported, "force": density.f}[stage]
         self._rows.append(whole[self._cells].copy())
         self._offsets.append(density.offset[self._cells] if stage == "force" else np.zeros(self._x.size))
 

@@ -7,14 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..balance.stages import Array, Stages
 from ..kernel import kernel
 from ..kinetic.equilibrium import Status
 from ..kinetic.equilibrium.status import FALLBACKS, MASS_ONLY, TWO_MOMENTS
 from ..kinetic.shift import shift_linear
 from ..kinetic.wing import Density
 from ..scene import Scene
-from ..step import Books, Stepper
+from ..stepper import Books, Stepper
 
 COLUMNS = {
     "mass": "mass in the domain",
@@ -26,6 +26,7 @@ COLUMNS = {
     "inflow_right": "mass that entered through the right end so far",
     "coupling_drift": "mass made so far at faces whose two cells took different fluxes",
     "window_loss": "mass that f lost so far over the edge of the velocity window",
+    "held": "mass that static friction held back at the faces in the step before",
 }
 """mass(t) - mass(0) = inflow_left + inflow_right + coupling_drift to rounding, unless U is summed anew from f."""
 
@@ -96,6 +97,7 @@ class Ledger:
         row = {
             "mass": math.fsum(h) * dx, "momentum": math.fsum(q) * dx,
             "h_min": self._h_min, "u_max": self._u_max, "courant": self._courant, **self._booked._asdict(),
+            "held": dx * held(self._stepper.now) if started else 0.0,
         }  # fmt: skip
         density = self._stepper.density
         if density is not None:
@@ -129,6 +131,13 @@ class Ledger:
         self._h_min = self._f_min = math.inf
         self._u_max = self._courant = self._residual = 0.0
         self._iterations = 0
+
+
+def held(now: Stages) -> float:
+    """Half the heights that faces hold back, for half of the particles look their way; per dx."""
+    back = np.minimum(now.theta * np.maximum(-now.e, 0.0), now.h[:-1])
+    forth = np.minimum(now.theta * np.maximum(now.e, 0.0), now.h[1:])
+    return 0.5 * float(math.fsum(back) + math.fsum(forth))
 
 
 DEPARTURE = ("sampling_mass", "sampling_momentum", "f_distance", "f_tail")

@@ -36,6 +36,12 @@ class Status:
         """Nothing to report."""
         return cls(np.zeros(rows, dtype=np.int64), np.zeros(rows), np.zeros(rows, dtype=np.int64))
 
+    def put(self, where: NDArray[np.intp], status: Status) -> None:
+        """Take over the reports of the rows `where`, and forget those of all others."""
+        for mine, theirs in zip(vars(self).values(), vars(status).values(), strict=True):
+            mine[:] = 0
+            mine[where] = theirs
+
     @property
     def converged(self) -> NDArray[np.bool_]:
         """Where no fall-back was needed, shape (rows,)."""

@@ -1,0 +1,79 @@
+"""The impulse of scheme 4: one clamped shift per cell does what gravity, friction, stopping and holding do."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel import kernel
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+DRY = float(np.finfo(float).tiny)
+"""The smallest height whose velocity has all its digits: the smallest normal number. It scales with no unit."""
+
+SHY = 1.0 - 1e-13
+"""Keeps the pull at rest below what it balances, rounding of heights a thousand jumps high included."""
+
+
+@kernel
+def clip_velocity(low: Array, high: Array, h1: Array, qhat: Array) -> None:
+    """Keep qhat/h^{n+1} among the particles that could come: those of the cells i - 1, i and i + 1.
+
+    `low` and `high` are the slowest and the fastest particle of each ghosted cell, inf and -inf where it is dry. In
+    exact arithmetic nothing changes; it is the whole rule for dry ground.
+    """
+    for i in range(h1.size):
+        if h1[i] >= DRY:
+            v = qhat[i] / h1[i]
+            slowest = min(low[i + 1], min(low[i], low[i + 2]))
+            quickest = max(high[i + 1], max(high[i], high[i + 2]))
+            if not v >= slowest:
+                qhat[i] = slowest * h1[i]
+            elif v > quickest:
+                qhat[i] = quickest * h1[i]
+        else:
+            h1[i] = 0.0
+            qhat[i] = 0.0
+
+
+@kernel
+def uphill_pull(h: float, above: float, below: float, net: float, reach: float, theta: float) -> float:
+    """The least pull s - R > 0 (`net`) on a cell of a mass that leans downhill, as the faces of a resting one see it.
+
+    The faces of the cell show the lower heights, so that the pressure between them is that of the mean of h and `above`
+    (its neighbour uphill), less than that of h; the pull is lessened alike. At a toe lower than the jump `reach` =
+    (s - R) dx/beta that friction balances, all of the pressure of h is at hand, and that of its neighbour `below`.
+    """
+    if not h > 0.0:
+        return net
+    lessened = net * (1.0 - max(h - above, 0.0) / (2.0 * h))
+    if h < reach:
+        least = min(above, h)
+        at_hand = net * (0.5 * max(h * h - least * least, 0.0) / (h * reach) + max(1.0 - (below - h) / reach, 0.0))
+        lessened = min(lessened, at_hand)
+    return (net + theta * (lessened - net)) * SHY if theta > 0.0 else net
+
+
+@kernel
+def clamped(
+    h: Array, h1: Array, qhat: Array, pulled: Array, theta: Array, still: Flags,
+    s: float, R: float, beta: float, dx: float, dt: float, J: Array,
+) -> None:  # fmt: skip
+    """J = clamp(-qhat; dt (s - R) pulled, dt (s + R) pulled): friction stops, and never reverses.
+
+    h is ghosted; `pulled` is the height that the force acts on. A cell between two still faces is held. Where even a
+    resting mass is driven (|s| > R), the bound that drives it is that of `uphill_pull`.
+    """
+    for i in range(J.size):
+        low, high = s - R, s + R
+        held = min(theta[i], theta[i + 1])
+        if low > 0.0:
+            low = uphill_pull(h[i + 1], h[i], h[i + 2], low, low * dx / beta, held)
+        elif high < 0.0:
+            high = -uphill_pull(h[i + 1], h[i + 2], h[i], -high, -high * dx / beta, held)
+        if still[i] and still[i + 1]:
+            J[i] = -qhat[i]
+        else:
+            J[i] = min(max(-qhat[i], (dt * low) * pulled[i]), (dt * high) * pulled[i])

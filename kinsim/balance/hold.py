@@ -1,0 +1,79 @@
+"""Held face states: at a slow face static friction holds back part of the density.
+
+The part that is held is the one that the admissible jump of heights would send across. With s = sin zeta and R of
+Definition 1, and for the cells i and i + 1 that meet at a face:
+
+    e = clamp(h_{i+1} - h_i; (s - R) dx/beta, (s + R) dx/beta)                       the jump that friction can balance,
+    w = (h_i |u_i| + h_{i+1} |u_{i+1}|)/(h_i + h_{i+1})                              how fast the face moves,
+    theta = (1 - w (w + sqrt(2 beta max(h_i, h_{i+1})))/(R dx))_+                    the share of e that is held.
+
+theta > 0 where friction stops the material of the face before its fastest particle has crossed a cell; no dt is in it,
+so that no time step makes it chatter. The face then shows h_i - theta (-e)_+ to the left and h_{i+1} - theta (e)_+ to
+the right of it, with the velocities of the cells. M(h, v) grows with h, so no more leaves a cell than it has.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel import kernel
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+SAME = 8e-15
+"""Jumps of height that differ by less than this share of the sum of heights are the same but for rounding."""
+
+
+@kernel
+def judge_faces(h: Array, u: Array, s: float, R: float, beta: float, dx: float, e: Array, theta: Array) -> None:
+    """Write e and theta of every face, shape (nx + 1,); h, u are ghosted."""
+    low, high = (s - R) * dx / beta, (s + R) * dx / beta
+    for i in range(e.size):
+        a, b = h[i], h[i + 1]
+        e[i] = min(max(b - a, low), high)
+        theta[i] = 0.0
+        if R > 0.0:
+            w = (a * abs(u[i]) + b * abs(u[i + 1])) / (a + b) if a + b > 0.0 else 0.0
+            theta[i] = max(1.0 - w * (w + math.sqrt(2.0 * beta * max(a, b))) / (R * dx), 0.0)
+
+
+@kernel
+def find_still(h: Array, u: Array, e: Array, theta: Array, still: Flags) -> None:
+    """Faces between resting cells whose jump friction balances."""
+    for i in range(e.size):
+        rest = theta[i] == 1.0 and u[i] == 0.0 and u[i + 1] == 0.0
+        still[i] = rest and abs((h[i + 1] - h[i]) - e[i]) <= SAME * (h[i + 1] + h[i])
+
+
+@kernel
+def hold_back(
+    h_plus: Array, u_plus: Array, h_minus: Array, u_minus: Array, e: Array, theta: Array, still: Flags,
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, held: Flags,
+) -> None:  # fmt: skip
+    """Write the face states, shape (nx + 1,), and where they differ from what the cells show.
+
+    `plus` is what a ghosted cell shows to its right wall, `minus` what it shows to its left one. A still face shows the
+    lower height on both sides.
+    """
+    for i in range(e.size):
+        a, b = h_plus[i], h_minus[i + 1]
+        if still[i]:
+            h_left[i] = h_right[i] = min(a, b)
+        else:
+            h_left[i] = max(a - theta[i] * max(-e[i], 0.0), 0.0)
+            h_right[i] = max(b - theta[i] * max(e[i], 0.0), 0.0)
+        u_left[i], u_right[i] = u_plus[i], u_minus[i + 1]
+        held[i] = h_left[i] != a or h_right[i] != b
+
+
+@kernel
+def rest_flux(h_left: Array, still: Flags, beta: float, F1: Array, F2: Array) -> None:
+    """A still face passes no mass, and the pressure of its height: exactly, whatever nodes the density has."""
+    for i in range(F1.size):
+        if still[i]:
+            F1[i] = 0.0
+            F2[i] = 0.5 * beta * h_left[i] * h_left[i]

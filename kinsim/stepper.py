@@ -1,0 +1,156 @@
+"""Between two times: the step from U^n to U^{n+1}, the same for both wings."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .balance.scheme4 import Held, HeldSloped, Reflecting
+from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face
+from .balance.stages import Array, Stages, reach
+from .balance.update import update
+from .balance.wing import Wing
+from .kinetic.equilibrium import EQUILIBRIA
+from .kinetic.fitted import FittedMeasure
+from .kinetic.force import FORCES
+from .kinetic.project import PROJECTIONS, FluxDifference, Projection
+from .kinetic.velocity import Fitted
+from .kinetic.wing import Density
+from .macroscopic.wing import ClosedForm
+from .method import Kinetic, Macroscopic
+from .scene import Scene
+
+
+class Books(NamedTuple):
+    """What one step did to the mass (h times length), beyond moving it about."""
+
+    inflow_left: float
+    inflow_right: float
+    coupling_drift: float
+    window_loss: float
+
+
+class Stepper:
+    """A scene and a method with the arrays of a step: `begin` at U^n, then `advance` by dt to U^{n+1}.
+
+    Attributes:
+        now: The arrays of the step.
+        density: The density of the kinetic wing on a grid, else None.
+        limit: The largest Courant number, (28).
+    """
+
+    limit = 1.0
+
+    def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
+        self.scene = scene
+        self.scheme = make_scheme(method, scene)
+        self.now = Stages.empty(scene.cells.count, self.scheme.sloped)
+        self.density: Density | None = None
+        self.projection: Projection = FluxDifference()
+        self.wing: Wing
+        if isinstance(method, Macroscopic):
+            self.wing = ClosedForm(scene)
+        elif isinstance(method.velocity, Fitted):
+            self.wing = FittedMeasure(scene, method.velocity.count)
+        else:
+            self.projection = PROJECTIONS[method.projection]
+            self.wing = self.density = Density(
+                scene, method.velocity, EQUILIBRIA[method.equilibrium], FORCES[method.force], self.scheme
+            )
+
+    def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
+        """Stand at U^n = (h, q), each of shape (nx,); returns the fastest occupied velocity.
+
+        Slopes that would make particles faster than `fastest` are left out.
+        """
+        self.now.begin(self.scene, h, q)  # u = q/h, ghosts
+        self.scheme.prepare(self.scene, self.now, fastest)
+        return self.wing.equilibrium(self.now)  # M(h, xi - u), (12)
+
+    def advance(self, dt: float) -> Books:
+        """From where `begin` stood to U^{n+1}, which is then in `now.h1`, `now.q1`."""
+        scene, now, scheme, wing = self.scene, self.now, self.scheme, self.wing
+        dx = scene.cells.dx
+        lam = dt / dx
+        walls = scheme.fluxes(scene, now, wing, dt)  # (19), (24), (25)
+        left, right, created = update(now.h, now.q, *walls, lam, now.h1, now.qhat)  # U^n - lam (F_{i+1/2} - F_{i-1/2})
+        wing.transport(now, lam)  # f^{n+1} before the shift, (23)
+        self.projection.after_transport(now, self.density)
+        scheme.impulse(scene, now, wing.pulled(now), dt)  # dt g h^{n+1}, (21), (22)
+        lost = wing.force(now)  # f(xi + dt g) <- f(xi), (23)
+        self.projection.after_force(now, self.density)  # U^{n+1}, (20)
+        if scene.boundary == "periodic":  # the two ends are one face
+            left, right, created = 0.0, 0.0, created + left + right
+        return Books(dt * left, dt * right, dt * created, dx * lost)
+
+    def reach(self) -> float:
+        """The outermost velocity of the states at U^n, face states included."""
+        return reach(self.now, self.scene.beta, self.scheme.uses_balanced)
+
+    def rest(self, h_max: float) -> float:
+        """The largest |q| of a mass at rest: rounding, or a thousandth of a velocity cell."""
+        return 1e-3 * self.density.grid.dxi * h_max if self.density else 1e-12
+
+
+class Heun(Stepper):
+    """Two steps, of which the second starts at the end of the first; their mean with U^n is of second order in dt.
+
+    Each cell is two halves (see `balance.slopes`), and each half is emptied through one face: h and f stay positive up
+    to the Courant number 1/2 of what the cells show. A step whose first stage becomes so fast that a second one would
+    break (28) ends with the first.
+    """
+
+    limit = 0.5
+
+    def advance(self, dt: float) -> Books:
+        now, density = self.now, self.density
+        dx = self.scene.cells.dx
+        h, q = now.h[1:-1].copy(), now.q.copy()
+        M = density.M.copy() if density else None
+        first = super().advance(dt)
+        h1, q1, J = now.h1.copy(), now.q1.copy(), now.J.copy()
+        F = now.F1.copy(), now.F2.copy()
+        spare = 0.5 * density.grid.dxi if density else 0.0
+        speed = self.begin(h1, q1, 0.5 * dx / dt - spare)
+        if speed * dt > dx:
+            self._stand_again(h, q, M)
+            return first
+        second = super().advance(dt)
+        np.multiply(0.5, h + now.h1, out=now.h1)
+        still = (q1 == 0.0) & (now.q1 == 0.0)  # at rest after both stages is at rest
+        now.q1[:] = np.where(still, 0.0, 0.5 * (q + now.q1))
+        np.multiply(0.5, J + now.J, out=now.J)
+        np.subtract(now.q1, now.J, out=now.qhat)
+        for mean, of_first in zip((now.F1, now.F2), F, strict=True):
+            np.multiply(0.5, of_first + mean, out=mean)
+        if density and M is not None:
+            density.average(M[1:-1])
+        self._stand_again(h, q, M)
+        return Books(*(0.5 * (a + b) for a, b in zip(first, second, strict=True)))
+
+    def _stand_again(self, h: Array, q: Array, M: Array | None) -> None:
+        """Let the stages show U^n, from which the step started."""
+        self.now.begin(self.scene, h, q)
+        self.scheme.prepare(self.scene, self.now, math.inf)
+        if self.density and M is not None:
+            self.density.M[:] = M
+
+
+def make_scheme(method: Kinetic | Macroscopic, scene: Scene) -> Scheme:
+    """The scheme of a method; without any force no cell is slow, so that scheme 3 is scheme 1."""
+    if method.scheme == 4:
+        if method.order == 2:
+            return HeldSloped(method.limiter)
+        return Reflecting() if method.statics == "reflect" else Held()
+    if method.scheme == 1 or (method.scheme == 3 and not scene.forced):
+        return Scheme1()
+    if method.scheme == 2:
+        return Scheme2()
+    return Scheme3Cell() if method.coupling == "cell" else Scheme3Face()
+
+
+def make_stepper(scene: Scene, method: Kinetic | Macroscopic) -> Stepper:
+    """The stepper that the order of the method asks for."""
+    return (Heun if method.order == 2 else Stepper)(scene, method)

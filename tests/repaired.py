@@ -1,0 +1,74 @@
+"""Every variant of scheme 4 in every wing, and what its tests start from."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from kinsim import Cells, ConstantSlope, Coulomb, Fitted, Fixed, Kinetic, Macroscopic, Scene, Uniform
+from kinsim.exact import random_pile
+
+EPS = float(np.finfo(float).eps)
+DELTA = 0.3
+
+VARIANTS = {
+    "first": {},
+    "second": {"order": 2},
+    "second, mc": {"order": 2, "limiter": "mc"},
+    "reflecting": {"statics": "reflect"},
+}
+WINGS = {
+    "closed": Macroscopic(4),
+    "fitted": Kinetic(4, Fitted(6)),
+    "grid": Kinetic(4, Uniform(32)),
+    "matched": Kinetic(4, Uniform(32), "matched"),
+}
+METHODS = {
+    f"{wing}, {name}": replace(method, **keys) for wing, method in WINGS.items() for name, keys in VARIANTS.items()
+}
+CLOSED = {name: method for name, method in METHODS.items() if name.startswith("closed")}
+
+EVERY = pytest.mark.parametrize("method", METHODS.values(), ids=METHODS.keys())
+IN_CLOSED_FORM = pytest.mark.parametrize("method", CLOSED.values(), ids=CLOSED.keys())
+LOWEST = (0.0, 0.3, 1.0)
+"""Lowest heights of the piles, by seed; the first has a dry toe."""
+
+PILES = [
+    (zeta, boundary)
+    for zeta in (0.0, DELTA / 2, DELTA, 2 * DELTA, 1.0, -2 * DELTA)
+    for boundary in (("wall", "open") if abs(zeta) <= DELTA else ("wall",))
+]
+LEANING = pytest.mark.parametrize(("zeta", "boundary", "seed"), [(*of, i % 3) for i, of in enumerate(PILES)])
+LEANING_ANY = pytest.mark.parametrize(("zeta", "boundary", "seed"), [(*of, seed) for of in PILES for seed in range(3)])
+
+
+def limit(method: Macroscopic | Kinetic) -> float:
+    """The largest Courant number."""
+    return 0.5 if method.order == 2 else 1.0
+
+
+def pile(zeta: float, boundary: str, seed: int, fill: float = 1.0) -> Scene:
+    """A random pile of 40 cells that takes the share `fill` of what friction can hold at each face."""
+    s, R, beta = math.sin(zeta), math.cos(zeta) * math.tan(DELTA), 0.4 * math.cos(zeta)
+    cells = Cells(0.0, 2.0, 40)
+    heap = random_pile(
+        cells, pull=s, resistance=R, beta=beta, fill=fill, per="face", rng=seed, lowest=LOWEST[seed % len(LOWEST)]
+    )
+    return Scene(cells, heap, ConstantSlope(zeta), Coulomb(DELTA), boundary, 0.4)
+
+
+def steps(scene: Scene, method: Macroscopic | Kinetic, count: int, fastest: float = 0.5) -> Fixed:
+    """Steps near the limit for masses up to `fastest`."""
+    h, _ = scene.initial()
+    speed = fastest + math.sqrt(2 * scene.beta * h.max()) * 1.05
+    return Fixed(0.9 * limit(method) * scene.cells.dx / speed, count)
+
+
+def wild(rng: np.random.Generator, count: int = 60) -> tuple[np.ndarray, np.ndarray]:
+    """Dry cells, 1e-300, 1e-12 and O(1) mixed, |u| up to twice c of the largest."""
+    h = rng.choice([0.0, 1e-300, 1e-12, 1.0], count) * rng.uniform(0.1, 1.0, count)
+    u = rng.uniform(-1, 1, count) * rng.choice([0.0, 0.1, 2.0], count)
+    return h, np.where(h > 0, u, 0.0)

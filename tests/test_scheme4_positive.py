@@ -1,0 +1,115 @@
+"""Scheme 4 on wild states: mass, positivity, bounded velocities, symmetry, and what it is without friction."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from repaired import EPS, EVERY, IN_CLOSED_FORM, limit, wild
+from states import random_states, scene_with
+
+from kinsim import Courant, Kinetic, Macroscopic, Uniform, simulate, step
+from kinsim.stepper import make_stepper
+
+
+@EVERY
+@pytest.mark.parametrize(
+    ("seed", "boundary", "zeta"), [(0, "wall", 0.0), (1, "periodic", 0.2), (2, "wall", 1.3), (3, "periodic", -1.3)]
+)
+def test_wild_states(method: Macroscopic | Kinetic, seed: int, boundary: str, zeta: float) -> None:
+    """200 steps at the limit: mass to 1e-14, h >= 0, f >= 0, all finite, |u| <= max(|u| + c) + dt max|G|."""
+    rng = np.random.default_rng(seed)
+    h, u = wild(rng)
+    scene = scene_with(h, u, zeta=zeta, delta=rng.choice([0.1, 0.3, 1.0]), boundary=boundary)
+    pull = abs(scene.chute.sin) + scene.resistance
+    q, mass, stages = h * u, math.fsum(h), method.order
+    for _ in range(200):
+        if isinstance(method, Kinetic) and isinstance(method.velocity, Uniform):
+            reach = np.max(np.abs(u) + np.sqrt(2 * scene.beta * h))
+            method = replace(method, velocity=Uniform(32, float(1.5 * reach)))
+        stepper = make_stepper(scene, method)
+        speed = stepper.begin(h, q)
+        dt = Courant(limit(method), 1e9).next_dt(0, 0.0, speed, scene.cells.dx)
+        assert dt is not None
+        books = stepper.advance(dt)
+        h, q = stepper.now.h1.copy(), stepper.now.q1.copy()
+        u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
+        assert h.min() >= 0
+        assert np.isfinite(h).all()
+        assert np.isfinite(q).all()
+        if stepper.density is not None:
+            assert stepper.density.transported.min() >= 0
+            assert stepper.density.f.min() >= 0
+        assert np.abs(u).max() <= (speed + stages * dt * pull) * (1 + 8 * EPS)
+        assert abs(books.coupling_drift) <= 60 * EPS
+    assert abs(math.fsum(h) / mass - 1) <= 1e-14
+
+
+@EVERY
+def test_mirrored_state_steps_to_the_mirror_image(method: Macroscopic | Kinetic, rng: np.random.Generator) -> None:
+    """x, xi, u and zeta to minus, bit for bit; so that the four ulps which sums over a grid may take are not used."""
+    h, u = random_states(rng, 70)
+    u[20:40] = 0.0
+    for boundary, zeta in (("periodic", 0.1), ("wall", 0.5), (("open", "wall"), 0.1)):
+        ends = boundary if isinstance(boundary, str) else boundary[::-1]
+        one = step(scene_with(h, u, zeta=zeta, delta=0.3, boundary=boundary), method, h, h * u, 0.004)
+        g, v = h[::-1].copy(), -u[::-1]
+        other = step(scene_with(g, v, zeta=-zeta, delta=0.3, boundary=ends), method, g, g * v, 0.004)
+        np.testing.assert_array_equal(one.h1, other.h1[::-1])
+        np.testing.assert_array_equal(one.q1, -other.q1[::-1])
+        if one.f_force is not None:
+            np.testing.assert_array_equal(one.f_force, other.f_force[::-1, ::-1])
+
+
+@EVERY
+@pytest.mark.parametrize("zeta", [0.0, 0.4])
+def test_without_friction_it_is_scheme_1_bit_for_bit(method, zeta, rng: np.random.Generator) -> None:
+    """Where the clip does not act: on wet ground, before slopes."""
+    if method.order == 2:
+        h, u = np.full(40, 0.7), np.full(40, 0.3)  # nothing to reconstruct; Heun sums twice
+        scene = scene_with(h, u, zeta=zeta, boundary="periodic")
+        now = step(scene, method, h, h * u, 0.004)
+        np.testing.assert_allclose(now.q1, h * (u + 0.004 * scene.chute.sin), rtol=8 * EPS)
+        return
+    h = 0.5 + rng.uniform(0, 0.4, 60)
+    u = rng.uniform(-0.3, 0.3, 60)
+    scene = scene_with(h, u, zeta=zeta, boundary="wall")
+    plain = {"scheme": 1, "statics": "hold"}
+    one, other = step(scene, method, h, h * u, 0.004), step(scene, replace(method, **plain), h, h * u, 0.004)
+    np.testing.assert_array_equal(one.h1, other.h1)
+    np.testing.assert_array_equal(one.q1, other.q1)
+    if one.f_force is not None:
+        np.testing.assert_array_equal(one.f_force, other.f_force)
+
+
+@IN_CLOSED_FORM
+@pytest.mark.parametrize(("zeta", "delta"), [(0.0, None), (0.0, 0.3), (0.5, 0.3)])
+def test_a_film_and_a_dry_bed_are_the_same(method: Macroscopic, zeta: float, delta: float | None) -> None:
+    """A dam breaks onto dry ground and onto a film of 1e-12: L1 of the difference <= 1e-10."""
+    x = (np.arange(80) + 0.5) / 80
+    ends = []
+    for film in (0.0, 1e-12):
+        scene = scene_with(np.where(np.abs(x - 0.4) < 0.2, 1.0, film), zeta=zeta, delta=delta, boundary="open")
+        ends.append(simulate(scene, method, Courant(0.9 * limit(method), 1.0), 10**6).h[-1])
+    assert 0.05 * np.abs(ends[0] - ends[1]).sum() <= 1e-10
+
+
+@EVERY
+@pytest.mark.parametrize("seed", range(2))
+def test_friction_never_reverses_and_never_accelerates(method: Macroscopic | Kinetic, seed: int) -> None:
+    """On flat ground q^{n+1} has the sign of the momentum that arrived, and is smaller; order 2 by its stages."""
+    rng = np.random.default_rng(seed)
+    h, u = random_states(rng, 80)
+    u[20:60] *= 1e-3
+    now = step(
+        scene_with(h, u, delta=1.2, boundary="periodic"), replace(method, order=1, limiter="between"), h, h * u, 0.01
+    )
+    assert (now.q1 * now.qhat >= 0).all()
+    assert (np.abs(now.q1) <= np.abs(now.qhat)).all()
+    assert (now.q1[now.qhat != 0] == 0).any()
+    moving = np.abs(now.q1) > 0
+    full = 0.01 * 1.0 * math.tan(1.2) * now.h1[moving]
+    lost = (np.abs(now.qhat) - np.abs(now.q1))[moving]
+    assert (lost <= full * (1 + 1e-12) + 4 * EPS).all()

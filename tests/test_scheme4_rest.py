@@ -1,0 +1,117 @@
+"""Scheme 4 at rest: bit for bit, disturbed, too steep; starting and stopping."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import SCENES
+from repaired import CLOSED, DELTA, EVERY, IN_CLOSED_FORM, LEANING, LEANING_ANY, METHODS, limit, pile, steps
+from states import scene_with
+
+from kinsim import Courant, Kinetic, Macroscopic, Profile, Scene, simulate
+from kinsim.clock import Replay
+
+
+def keeps(scene: Scene, method: Macroscopic | Kinetic, count: int) -> bool:
+    """Whether the scene is bitwise as it was, whenever one looks."""
+    run = simulate(scene, method, steps(scene, method, count), 100)
+    return bool((run.h == scene.initial()[0]).all() and (run.q == 0).all())
+
+
+@IN_CLOSED_FORM
+@LEANING_ANY
+def test_rest_is_bitwise(method: Macroscopic, zeta: float, boundary: str, seed: int) -> None:
+    """Random piles that take 100 percent of what friction can hold, 2000 steps."""
+    assert keeps(pile(zeta, boundary, seed), method, 2000)
+
+
+@EVERY
+@LEANING
+def test_rest_is_bitwise_in_both_wings(method: Macroscopic | Kinetic, zeta: float, boundary: str, seed: int) -> None:
+    """The same with densities of 32 nodes."""
+    assert keeps(pile(zeta, boundary, seed), method, 200)
+
+
+@pytest.mark.parametrize("name", ["closed, first", "closed, second", "matched, first", "fitted, second, mc"])
+@LEANING
+def test_a_disturbed_pile_stops_again_and_stays(name: str, zeta: float, boundary: str, seed: int) -> None:
+    """Noise of 1e-8 in h and u. Above the friction angle a film that spilled onto bare ground (< 1e-12) runs on.
+
+    Cell averages on a grid do so below the friction angle only: their second moment errs by n^-2.
+    """
+    method = METHODS[name]
+    scene = pile(zeta, boundary, seed)
+    h, _ = scene.initial()
+    rng = np.random.default_rng(seed)
+    shaken = h * (1 + 1e-8 * rng.standard_normal(h.size))
+    heap = Profile(shaken, 1e-8 * rng.standard_normal(h.size) * (h > 0))
+    run = simulate(replace(scene, heap=heap), method, steps(scene, method, 2000), 1000)
+    film = (h == 0) & (run.h[-1] < 1e-12) & (abs(zeta) > DELTA)
+    assert (run.q[-1][~film] == 0).all()
+    assert np.abs(run.h[-1] - run.h[-2]).max() <= (1e-12 if film.any() else 0.0)
+    assert np.abs(run.h[-1] - h).max() <= 1e-6
+
+
+@EVERY
+@LEANING
+def test_one_face_five_percent_too_steep_starts(method, zeta: float, boundary: str, seed: int) -> None:
+    """Wherever it is."""
+    scene = pile(zeta, boundary, seed)
+    h, _ = scene.initial()
+    s, R, beta, dx = scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx
+    for face in (5, 20, 33):
+        steep = h.copy()
+        steep[face + 1 :] += (s + 1.05 * R) * dx / beta - (h[face + 1] - h[face])
+        steep -= min(steep.min(), 0.0)
+        tilted = replace(scene, heap=Profile(steep))
+        run = simulate(tilted, method, steps(tilted, method, 8), 8)
+        assert (run.h[-1] != steep).any()
+
+
+@EVERY
+@pytest.mark.parametrize(("zeta", "film"), [(0.15, 0.0), (-0.28, 0.2)])
+def test_closed_masses_stop(method: Macroscopic | Kinetic, zeta: float, film: float) -> None:
+    """Below the friction angle, wet and dry: u is exactly 0 at the end, and stays."""
+    x = (np.arange(48) + 0.5) / 48
+    h = np.where(np.abs(x - 0.5) < 0.15, 1.0, film)
+    scene = scene_with(h, 0.5 * (h > 0.5), zeta=zeta, delta=DELTA, boundary="wall")
+    run = simulate(scene, method, Courant(0.9 * limit(method), 60.0), 10)
+    at = np.flatnonzero((run.q != 0).any(axis=1))
+    assert at.max() < len(run.t) - 3
+    assert run.mass_drift == pytest.approx(0, abs=1e-14)
+
+
+@IN_CLOSED_FORM
+@pytest.mark.parametrize("number", [None, 0.9])
+def test_a_strong_wave_has_no_ripples(method: Macroscopic, number: float | None) -> None:
+    """`riemann`: the total variation of h exceeds that of the exact solution, 0.5, by at most 1e-3; with mc by 1e-2."""
+    scene, paper = SCENES["riemann"]
+    end = simulate(scene, method, paper if number is None else Courant(number * limit(method), 5.0), 10**6).h[-1]
+    assert np.abs(np.diff(end)).sum() - 0.5 <= (1e-2 if method.limiter == "mc" else 1e-3)
+
+
+@IN_CLOSED_FORM
+def test_moving_masses_do_not_chatter(method: Macroscopic) -> None:
+    """A disturbance of 1e-13 in `sine` stays below 1e-11."""
+    scene, _ = SCENES["sine"]
+    h, _ = scene.initial()
+    run = simulate(scene, method, Courant(0.9 * limit(method), 4.0), 10**6)
+    nudge = 1e-13 * np.random.default_rng(0).standard_normal(h.size)
+    nudged = replace(scene, heap=Profile(h * (1 + nudge)))
+    again = simulate(nudged, method, Replay(tuple(run.dt.tolist()), end=float(run.t[-1])), 10**6, force=True)
+    assert np.abs(run.h[-1] - again.h[-1]).max() <= 1e-11
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_odd_even_piles_decay(name: str) -> None:
+    """A zigzag steeper than friction holds is no rest, unlike under (22): it starts, decays and stops."""
+    h = 1.0 + 0.1 * (-1.0) ** np.arange(40)
+    scene = scene_with(h, delta=DELTA, boundary="periodic")
+    run = simulate(scene, CLOSED[name], Courant(0.9 * limit(CLOSED[name]), 20.0), 10**6)
+    steepest = np.abs(np.diff(run.h[-1])).max() / scene.cells.dx * scene.beta
+    assert (run.q[-1] == 0).all()
+    assert steepest <= scene.resistance * (1 + 1e-3)
+    assert math.fsum(run.h[-1]) == pytest.approx(40.0, rel=1e-14)
