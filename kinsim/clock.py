@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Protocol
+from typing import Annotated, ClassVar, Literal, Protocol
 
 from pydantic import Field
 
@@ -15,6 +15,10 @@ Positive = Annotated[Number, Field(gt=0)]
 class Clock(Protocol):
     """Gives the next step from the time and the fastest particle; None when the run is over."""
 
+    @property
+    def stop_at_rest(self) -> bool:
+        """Whether a mass that came to rest ends the run."""
+
     def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None: ...
     def time_after(self, step: int, t: float, dt: float) -> float: ...
     def progress(self, step: int, t: float) -> float: ...
@@ -22,10 +26,11 @@ class Clock(Protocol):
 
 @value
 class Fixed:
-    """`steps` steps of length `dt` (dimensionless time)."""
+    """`steps` steps of length `dt` (dimensionless time); fewer with `stop_at_rest`, if the mass came to rest before."""
 
     dt: Positive
     steps: Annotated[Whole, Field(ge=1)]
+    stop_at_rest: bool = False
     kind: Literal["fixed"] = kind("fixed")
 
     def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
@@ -43,10 +48,14 @@ class Fixed:
 
 @value
 class Courant:
-    """Steps with speed dt/dx = `number`, speed as in (28); the last one lands on the time `end`."""
+    """Steps with speed dt/dx = `number`, speed as in (28); the last one lands on the time `end`.
+
+    With `stop_at_rest` the run ends before, if the mass came to rest.
+    """
 
     number: Positive
     end: Positive
+    stop_at_rest: bool = False
     kind: Literal["courant"] = kind("courant")
 
     def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
@@ -75,6 +84,7 @@ class Replay:
     dts: tuple[Positive, ...]
     end: Annotated[Number, Field(ge=0)]
     kind: Literal["replay"] = kind("replay")
+    stop_at_rest: ClassVar[bool] = False
 
     def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
         """The other run's step."""

@@ -191,13 +191,16 @@ class _Loop:
                 place = f"cell {look.bad} (x = {scene.x[look.bad]:.4g})"
                 return self.verdict("non-finite", f"h or q is not finite in {place}; stopped", look.bad)
             after = clock.time_after(self.step + 1, self.t, dt)
+            self.still = self.still + 1 if look.q_max <= stepper.rest(look.h_max) else 0
+            settled = clock.stop_at_rest and self.still > 0 and self._settled(h1, q1, look.h_max)
             last = self._accept(h1, q1, dt, after)
             self.ledger.note(look, courant, books._replace(window_loss=books.window_loss + dx * cut))
             self.fastest = look.fastest
-            self.still = self.still + 1 if look.q_max <= stepper.rest(look.h_max) else 0
             if last or self.step % self.save_every == 0:
                 self.ledger.save(self.h, self.q)
                 self._save()
+            if settled and not last:
+                return self.verdict("at-rest", "came to rest")
             if progress and self.step % 16 == 0:
                 progress(clock.progress(self.step, self.t))
         return self.verdict("interrupted", "interrupted")
@@ -255,6 +258,12 @@ class _Loop:
         self.step, self.t = self.step + 1, after
         self.dts.append(dt)
         return last
+
+    def _settled(self, h1: Array, q1: Array, h_max: float) -> bool:
+        """Whether a step changed nothing of a mass without motion; what only rounding moves must do so for a while."""
+        if np.array_equal(h1, self.h) and np.array_equal(q1, self.q):
+            return True
+        return self.still >= REST_STEPS and float(np.max(np.abs(h1 - self.h))) <= ROUNDING * h_max
 
     def _end(self) -> Verdict:
         if self.still >= REST_STEPS:
