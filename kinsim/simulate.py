@@ -159,7 +159,8 @@ class _Loop:
 
     def run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
         """Step until the clock or a fault ends it."""
-        scene, clock, stepper, dx = self.scene, self.clock, self.stepper, self.scene.cells.dx
+        scene, clock, stepper = self.scene, self.clock, self.stepper
+        dx, beta = scene.cells.dx, scene.beta
         self.ledger.start(self.h, self.q)
         self._save()
         while not interrupt.asked:
@@ -186,7 +187,7 @@ class _Loop:
                 return self.verdict("window-too-small", f"{self.outside}; stopped")
             books = stepper.advance(dt)
             h1, q1 = stepper.now.h1, stepper.now.q1
-            look = Survey(*survey(h1, q1, scene.beta))
+            look = Survey(*survey(h1, q1, beta))
             if look.bad >= 0:
                 place = f"cell {look.bad} (x = {scene.x[look.bad]:.4g})"
                 return self.verdict("non-finite", f"h or q is not finite in {place}; stopped", look.bad)
@@ -194,7 +195,9 @@ class _Loop:
             self.still = self.still + 1 if look.q_max <= stepper.rest(look.h_max) else 0
             settled = clock.stop_at_rest and self.still > 0 and self._settled(h1, q1, look.h_max)
             last = self._accept(h1, q1, dt, after)
-            self.ledger.note(look, courant, books._replace(window_loss=books.window_loss + dx * cut))
+            if cut:
+                books = books._replace(window_loss=books.window_loss + dx * cut)
+            self.ledger.note(look, courant, books)
             self.fastest = look.fastest
             if last or self.step % self.save_every == 0:
                 self.ledger.save(self.h, self.q)

@@ -45,9 +45,11 @@ class Stepper:
 
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
         self.scene = scene
+        self._dx, self._beta, self._periodic = scene.cells.dx, scene.beta, scene.boundary == "periodic"
         self.scheme = make_scheme(method, scene)
         self.now = Stages.empty(scene.cells.count, self.scheme.sloped)
         self.density: Density | None = None
+        self._fastest = 0.0
         self.projection: Projection = FluxDifference()
         self.wing: Wing
         if isinstance(method, Macroscopic):
@@ -66,28 +68,30 @@ class Stepper:
         Slopes that would make particles faster than `fastest` are left out.
         """
         self.now.begin(self.scene, h, q)  # u = q/h, ghosts
-        self.scheme.prepare(self.scene, self.now, fastest)
-        return self.wing.equilibrium(self.now)  # M(h, xi - u), (12)
+        self.scheme.prepare(self.now, fastest)
+        self._fastest = self.wing.equilibrium(self.now)  # M(h, xi - u), (12)
+        return self._fastest
 
     def advance(self, dt: float) -> Books:
         """From where `begin` stood to U^{n+1}, which is then in `now.h1`, `now.q1`."""
-        scene, now, scheme, wing = self.scene, self.now, self.scheme, self.wing
-        dx = scene.cells.dx
+        now, scheme, wing, dx = self.now, self.scheme, self.wing, self._dx
         lam = dt / dx
-        walls = scheme.fluxes(scene, now, wing, dt)  # (19), (24), (25)
+        walls = scheme.fluxes(now, wing, dt)  # (19), (24), (25)
         left, right, created = update(now.h, now.q, *walls, lam, now.h1, now.qhat)  # U^n - lam (F_{i+1/2} - F_{i-1/2})
         wing.transport(now, lam)  # f^{n+1} before the shift, (23)
         self.projection.after_transport(now, self.density)
-        scheme.impulse(scene, now, wing.pulled(now), dt)  # dt g h^{n+1}, (21), (22)
+        scheme.impulse(now, wing.pulled(now), dt)  # dt g h^{n+1}, (21), (22)
         lost = wing.force(now)  # f(xi + dt g) <- f(xi), (23)
         self.projection.after_force(now, self.density)  # U^{n+1}, (20)
-        if scene.boundary == "periodic":  # the two ends are one face
+        if self._periodic:  # the two ends are one face
             left, right, created = 0.0, 0.0, created + left + right
         return Books(dt * left, dt * right, dt * created, dx * lost)
 
     def reach(self) -> float:
         """The outermost velocity of the states at U^n, face states included."""
-        return reach(self.now, self.scene.beta, self.scheme.uses_balanced)
+        if self.density is None and not self.scheme.uses_balanced:
+            return self._fastest
+        return reach(self.now, self._beta, self.scheme.uses_balanced)
 
     def rest(self, h_max: float) -> float:
         """The largest |q| of a mass at rest: rounding, or a thousandth of a velocity cell."""
@@ -133,7 +137,7 @@ class Heun(Stepper):
     def _stand_again(self, h: Array, q: Array, M: Array | None) -> None:
         """Let the stages show U^n, from which the step started."""
         self.now.begin(self.scene, h, q)
-        self.scheme.prepare(self.scene, self.now, math.inf)
+        self.scheme.prepare(self.now, math.inf)
         if self.density and M is not None:
             self.density.M[:] = M
 
@@ -142,13 +146,13 @@ def make_scheme(method: Kinetic | Macroscopic, scene: Scene) -> Scheme:
     """The scheme of a method; without any force no cell is slow, so that scheme 3 is scheme 1."""
     if method.scheme == 4:
         if method.order == 2:
-            return HeldSloped(method.limiter)
-        return Reflecting() if method.statics == "reflect" else Held()
+            return HeldSloped(scene, method.limiter)
+        return Reflecting(scene) if method.statics == "reflect" else Held(scene)
     if method.scheme == 1 or (method.scheme == 3 and not scene.forced):
-        return Scheme1()
+        return Scheme1(scene)
     if method.scheme == 2:
-        return Scheme2()
-    return Scheme3Cell() if method.coupling == "cell" else Scheme3Face()
+        return Scheme2(scene)
+    return (Scheme3Cell if method.coupling == "cell" else Scheme3Face)(scene)
 
 
 def make_stepper(scene: Scene, method: Kinetic | Macroscopic) -> Stepper:

@@ -58,21 +58,28 @@ def uphill_pull(h: float, above: float, below: float, net: float, reach: float, 
 
 @kernel
 def clamped(
-    h: Array, h1: Array, qhat: Array, pulled: Array, theta: Array, still: Flags,
-    s: float, R: float, beta: float, dx: float, dt: float, J: Array,
+    h: Array, h1: Array, qhat: Array, pulled: Array, e: Array, theta: Array, still: Flags,
+    s: float, R: float, beta: float, dx: float, dt: float, wall_left: bool, wall_right: bool, J: Array,
 ) -> None:  # fmt: skip
     """J = clamp(-qhat; dt (s - R) pulled, dt (s + R) pulled): friction stops, and never reverses.
 
     h is ghosted; `pulled` is the height that the force acts on. A cell between two still faces is held. Where even a
-    resting mass is driven (|s| > R), the bound that drives it is that of `uphill_pull`.
+    resting mass is driven (|s| > R), the bound that drives it is that of `uphill_pull`; a wall bears what stands before
+    it as a heap of the same slope would.
     """
+    last = J.size - 1
     for i in range(J.size):
+        before, here, after = h[i], h[i + 1], h[i + 2]
+        if wall_left and i == 0:
+            before = max(here - e[0], 0.0)
+        if wall_right and i == last:
+            after = max(here + e[last + 1], 0.0)
         low, high = s - R, s + R
         held = min(theta[i], theta[i + 1])
         if low > 0.0:
-            low = uphill_pull(h[i + 1], h[i], h[i + 2], low, low * dx / beta, held)
+            low = uphill_pull(here, before, after, low, low * dx / beta, held)
         elif high < 0.0:
-            high = -uphill_pull(h[i + 1], h[i + 2], h[i], -high, -high * dx / beta, held)
+            high = -uphill_pull(here, after, before, -high, -high * dx / beta, held)
         if still[i] and still[i + 1]:
             J[i] = -qhat[i]
         else:

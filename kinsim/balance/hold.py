@@ -29,9 +29,16 @@ SAME = 8e-15
 
 
 @kernel
-def judge_faces(h: Array, u: Array, s: float, R: float, beta: float, dx: float, e: Array, theta: Array) -> None:
-    """Write e and theta of every face, shape (nx + 1,); h, u are ghosted."""
+def judge_faces(
+    h: Array, u: Array, s: float, R: float, beta: float, dx: float, wall_left: bool, wall_right: bool,
+    e: Array, theta: Array, still: Flags,
+) -> None:  # fmt: skip
+    """Write e and theta of every face, and which faces are still, shape (nx + 1,); h, u are ghosted.
+
+    A still face is one between resting cells whose jump friction balances. A wall is judged as the face next to it.
+    """
     low, high = (s - R) * dx / beta, (s + R) * dx / beta
+    last = e.size - 1
     for i in range(e.size):
         a, b = h[i], h[i + 1]
         e[i] = min(max(b - a, low), high)
@@ -39,33 +46,36 @@ def judge_faces(h: Array, u: Array, s: float, R: float, beta: float, dx: float, 
         if R > 0.0:
             w = (a * abs(u[i]) + b * abs(u[i + 1])) / (a + b) if a + b > 0.0 else 0.0
             theta[i] = max(1.0 - w * (w + math.sqrt(2.0 * beta * max(a, b))) / (R * dx), 0.0)
-
-
-@kernel
-def find_still(h: Array, u: Array, e: Array, theta: Array, still: Flags) -> None:
-    """Faces between resting cells whose jump friction balances."""
-    for i in range(e.size):
         rest = theta[i] == 1.0 and u[i] == 0.0 and u[i + 1] == 0.0
-        still[i] = rest and abs((h[i + 1] - h[i]) - e[i]) <= SAME * (h[i + 1] + h[i])
+        still[i] = rest and abs((b - a) - e[i]) <= SAME * (a + b)
+    if wall_left and last > 1:
+        e[0], theta[0], still[0] = e[1], theta[1], still[1]
+    if wall_right and last > 1:
+        e[last], theta[last], still[last] = e[last - 1], theta[last - 1], still[last - 1]
 
 
 @kernel
 def hold_back(
     h_plus: Array, u_plus: Array, h_minus: Array, u_minus: Array, e: Array, theta: Array, still: Flags,
+    wall_left: bool, wall_right: bool,
     h_left: Array, u_left: Array, h_right: Array, u_right: Array, held: Flags,
 ) -> None:  # fmt: skip
     """Write the face states, shape (nx + 1,), and where they differ from what the cells show.
 
     `plus` is what a ghosted cell shows to its right wall, `minus` what it shows to its left one. A still face shows the
-    lower height on both sides.
+    lower height on both sides. A wall shows on both sides what its cell does, so that nothing passes.
     """
+    last = e.size - 1
     for i in range(e.size):
         a, b = h_plus[i], h_minus[i + 1]
-        if still[i]:
+        h_left[i] = max(a - theta[i] * max(-e[i], 0.0), 0.0)
+        h_right[i] = max(b - theta[i] * max(e[i], 0.0), 0.0)
+        if wall_left and i == 0:
+            h_left[i] = h_right[i]
+        elif wall_right and i == last:
+            h_right[i] = h_left[i]
+        elif still[i]:
             h_left[i] = h_right[i] = min(a, b)
-        else:
-            h_left[i] = max(a - theta[i] * max(-e[i], 0.0), 0.0)
-            h_right[i] = max(b - theta[i] * max(e[i], 0.0), 0.0)
         u_left[i], u_right[i] = u_plus[i], u_minus[i + 1]
         held[i] = h_left[i] != a or h_right[i] != b
 

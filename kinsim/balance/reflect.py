@@ -23,14 +23,20 @@ ROUNDING = 1e-13
 
 @kernel
 def find_static(
-    h: Array, u: Array, s: float, R: float, beta: float, dx: float, dt: float, leftover: Array, static: Flags
-) -> None:
-    """Write L_+ and which faces are static, shape (nx + 1,); h, u are ghosted."""
+    h: Array, u: Array, s: float, R: float, beta: float, dx: float, dt: float, wall_left: bool, wall_right: bool,
+    leftover: Array, static: Flags,
+) -> None:  # fmt: skip
+    """Write L_+ and which faces are static, shape (nx + 1,); h, u are ghosted. A wall is as the face next to it."""
     for i in range(static.size):
         spare = R - abs(s - beta * (h[i + 1] - h[i]) / dx)
         leftover[i] = max(spare, 0.0)
         fastest = max(abs(u[i]), abs(u[i + 1]))
         static[i] = R > 0.0 and spare >= -ROUNDING and fastest <= dt * leftover[i]
+    last = static.size - 1
+    if wall_left and last > 1:
+        leftover[0], static[0] = leftover[1], static[1]
+    if wall_right and last > 1:
+        leftover[last], static[last] = leftover[last - 1], static[last - 1]
 
 
 @kernel

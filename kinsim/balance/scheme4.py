@@ -13,7 +13,7 @@ import numpy as np
 from ..model.boundary import ends, extend_shown
 from ..scene import Scene
 from .clamp import clamped, clip_velocity
-from .hold import find_still, hold_back, judge_faces, rest_flux
+from .hold import hold_back, judge_faces, rest_flux
 from .reflect import find_static, reflected, stopped
 from .slopes import reconstruct
 from .stages import Array, Stages
@@ -32,37 +32,28 @@ class Held:
     uses_balanced = sloped = False
     has_faces = True
 
-    def prepare(self, scene: Scene, now: Stages, fastest: float) -> None:
-        """Judge the faces: e and theta; a wall is judged as the face next to it."""
-        s, R, beta, dx = scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx
-        judge_faces(now.h, now.u, s, R, beta, dx, now.e, now.theta)
-        find_still(now.h, now.u, now.e, now.theta, now.still)
-        for at, inner in _walls(scene):
-            now.e[at], now.theta[at], now.still[at] = now.e[inner], now.theta[inner], now.still[inner]
+    def __init__(self, scene: Scene) -> None:
+        self._boundary = scene.boundary
+        self._ground = (scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx)
+        left, right = ends(scene.boundary)
+        self._walls = (left == "wall", right == "wall")
 
-    def fluxes(self, scene: Scene, now: Stages, wing: Wing, dt: float) -> Walls:
-        to, shown = now.balanced, now.upwind
-        hold_back(
-            *now.plus, *now.minus, now.e, now.theta, now.still, to.h_left, to.u_left, to.h_right, to.u_right, now.held
-        )
-        for at, _ in _walls(scene):  # both sides alike, so that nothing passes
-            inside, ghost, of = (
-                (to.h_right, to.h_left, shown.h_right) if at == 0 else (to.h_left, to.h_right, shown.h_left)
-            )
-            ghost[at] = inside[at]
-            now.held[at] = inside[at] != of[at]
+    def prepare(self, now: Stages, fastest: float) -> None:
+        judge_faces(now.h, now.u, *self._ground, *self._walls, now.e, now.theta, now.still)
+
+    def fluxes(self, now: Stages, wing: Wing, dt: float) -> Walls:
+        to = now.balanced
+        states = (to.h_left, to.u_left, to.h_right, to.u_right)
+        hold_back(*now.plus, *now.minus, now.e, now.theta, now.still, *self._walls, *states, now.held)
         wing.support(now)
         wing.held_flux(now)
-        rest_flux(to.h_left, now.still, scene.beta, now.F1, now.F2)
+        rest_flux(to.h_left, now.still, self._ground[2], now.F1, now.F2)
         return Walls.of(now.F1, now.F2)
 
-    def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
-        s, R, beta, dx = scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
         clip_velocity(now.low, now.high, now.h1, now.qhat)
-        h = now.h.copy()
-        for at, _ in _walls(scene):  # a wall bears what stands before it as a heap of the same slope would
-            h[at] = max(h[1] - now.e[0] if at == 0 else h[-2] + now.e[-1], 0.0)
-        clamped(h, now.h1, now.qhat, pulled, now.theta, now.still, s, R, beta, dx, dt, now.J)
+        faces = (now.e, now.theta, now.still)
+        clamped(now.h, now.h1, now.qhat, pulled, *faces, *self._ground, dt, *self._walls, now.J)
 
 
 class HeldSloped(Held):
@@ -70,45 +61,37 @@ class HeldSloped(Held):
 
     sloped = True
 
-    def __init__(self, limiter: Limiter) -> None:
+    def __init__(self, scene: Scene, limiter: Limiter) -> None:
+        super().__init__(scene)
         self._steepest = STEEPEST[limiter]
 
-    def prepare(self, scene: Scene, now: Stages, fastest: float) -> None:
-        """Judge the faces, and show slopes to them where they are not held."""
-        super().prepare(scene, now, fastest)
-        reconstruct(now.h, now.u, now.theta, self._steepest, scene.beta, fastest, *now.minus, *now.plus)
-        extend_shown(scene.boundary, now.minus, now.plus)
+    def prepare(self, now: Stages, fastest: float) -> None:
+        super().prepare(now, fastest)
+        beta = self._ground[2]
+        reconstruct(now.h, now.u, now.theta, self._steepest, beta, fastest, *now.minus, *now.plus)
+        extend_shown(self._boundary, now.minus, now.plus)
 
-    def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
         """The impulse of a stage acts on h^n, at least half and at most twice h^{n+1}."""
-        super().impulse(scene, now, np.clip(now.h[1:-1], 0.5 * now.h1, 2.0 * now.h1), dt)
+        super().impulse(now, np.clip(now.h[1:-1], 0.5 * now.h1, 2.0 * now.h1), dt)
 
 
-class Reflecting:
+class Reflecting(Held):
     """Faces that friction can hold turn particles round; conservative in mass, positive, rests."""
 
-    uses_balanced = has_faces = sloped = False
+    has_faces = False
 
-    def prepare(self, scene: Scene, now: Stages, fastest: float) -> None:
+    def prepare(self, now: Stages, fastest: float) -> None:
         pass
 
-    def fluxes(self, scene: Scene, now: Stages, wing: Wing, dt: float) -> Walls:
-        s, R, beta, dx = scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx
-        find_static(now.h, now.u, s, R, beta, dx, dt, now.leftover, now.static)
-        for at, inner in _walls(scene):
-            now.leftover[at], now.static[at] = now.leftover[inner], now.static[inner]
+    def fluxes(self, now: Stages, wing: Wing, dt: float) -> Walls:
+        find_static(now.h, now.u, *self._ground, dt, *self._walls, now.leftover, now.static)
         wing.support(now)
         half = wing.half_moments(now)
         reflected(half[:2], half[2:], now.static, now.F1, now.F2, now.B2)
         return Walls(now.F1[:-1], now.B2[:-1], now.F1[1:], now.F2[1:])
 
-    def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
-        s, R = scene.chute.sin, scene.resistance
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
+        s, R, _, _ = self._ground
         clip_velocity(now.low, now.high, now.h1, now.qhat)
         stopped(pulled, now.qhat, now.leftover, now.static, s, R, dt, now.J)
-
-
-def _walls(scene: Scene) -> list[tuple[int, int]]:
-    """Which end faces are walls, each with the face next to it, as which it is judged."""
-    next_to = ((0, 1), (-1, -2)) if scene.cells.count > 1 else ((0, 0), (-1, -1))
-    return [faces for kind, faces in zip(ends(scene.boundary), next_to, strict=True) if kind == "wall"]

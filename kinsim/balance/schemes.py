@@ -28,13 +28,13 @@ class Scheme(Protocol):
     sloped: bool
     """Whether cells show other states at their walls than their own: second order."""
 
-    def prepare(self, scene: Scene, now: Stages, fastest: float) -> None:
+    def prepare(self, now: Stages, fastest: float) -> None:
         """Write what cells show to their walls; slopes that make particles faster than `fastest` are left out."""
 
-    def fluxes(self, scene: Scene, now: Stages, wing: Wing, dt: float) -> Walls:
+    def fluxes(self, now: Stages, wing: Wing, dt: float) -> Walls:
         """The fluxes that each cell takes at its walls."""
 
-    def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
         """Write `J`; `pulled`, shape (nx,), is the height that the force acts on."""
 
 
@@ -43,16 +43,19 @@ class Scheme1:
 
     uses_balanced = has_faces = sloped = False
 
-    def prepare(self, scene: Scene, now: Stages, fastest: float) -> None:
+    def __init__(self, scene: Scene) -> None:
+        self._boundary = scene.boundary
+        self._ground = (scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx)
+
+    def prepare(self, now: Stages, fastest: float) -> None:
         pass
 
-    def fluxes(self, scene: Scene, now: Stages, wing: Wing, dt: float) -> Walls:
-        now.at_left[:] = now.at_right[:] = False
+    def fluxes(self, now: Stages, wing: Wing, dt: float) -> Walls:
         wing.upwind_flux(now)
         return Walls.of(now.F1, now.F2)
 
-    def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
-        sliding(now.h, now.u, pulled, scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx, dt, now.J)
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
+        sliding(now.h, now.u, pulled, *self._ground, dt, now.J)
 
 
 class Scheme2(Scheme1):
@@ -60,14 +63,15 @@ class Scheme2(Scheme1):
 
     uses_balanced = has_faces = True
 
-    def fluxes(self, scene: Scene, now: Stages, wing: Wing, dt: float) -> Walls:
+    def fluxes(self, now: Stages, wing: Wing, dt: float) -> Walls:
+        s, R, _, dx = self._ground
         to = now.balanced
         balanced(now.h, now.u, to.h_left, to.u_left, to.h_right, to.u_right)
         wing.upwind_flux(now)
         wing.balanced_flux(now)
-        candidate(now.h, now.B1, dt / scene.cells.dx, now.h1_candidate)
-        find_slow(now.q, now.h1_candidate, scene.chute.sin, scene.resistance, dt, now.slow[1:-1])
-        extend_flag(scene.boundary, now.slow)
+        candidate(now.h, now.B1, dt / dx, now.h1_candidate)
+        find_slow(now.q, now.h1_candidate, s, R, dt, now.slow[1:-1])
+        extend_flag(self._boundary, now.slow)
         self.choose(now)
         F, B = Walls.of(now.F1, now.F2), Walls.of(now.B1, now.B2)
         at = (now.at_left, now.at_left, now.at_right, now.at_right)
@@ -77,10 +81,8 @@ class Scheme2(Scheme1):
         """Write `at_left` and `at_right`: where cells take the balanced flux."""
         now.at_left[:] = now.at_right[:] = True
 
-    def impulse(self, scene: Scene, now: Stages, pulled: Array, dt: float) -> None:
-        s, R = scene.chute.sin, scene.resistance
-        inner = now.slow[1:-1]
-        stopping(now.h, now.q, pulled, now.h1_candidate, inner, s, R, scene.beta, scene.cells.dx, dt, now.J)
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
+        stopping(now.h, now.q, pulled, now.h1_candidate, now.slow[1:-1], *self._ground, dt, now.J)
 
 
 class Scheme3Cell(Scheme2):

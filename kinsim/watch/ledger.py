@@ -62,7 +62,7 @@ class Ledger:
     def __init__(self, scene: Scene, stepper: Stepper) -> None:
         self._scene, self._stepper = scene, stepper
         self._rows: list[dict[str, float]] = []
-        self._booked = Books(0.0, 0.0, 0.0, 0.0)
+        self._booked = [0.0] * len(Books._fields)
         self._fallbacks = np.zeros(len(FALLBACKS), dtype=np.int64)
         self.least_height = math.inf
         self.least_density = 0.0
@@ -83,7 +83,8 @@ class Ledger:
         self._courant = max(self._courant, courant)
         self.least_height = min(self.least_height, look.h_min)
         self.worst_courant = max(self.worst_courant, courant)
-        self._booked = Books(*map(sum, zip(self._booked, books, strict=True)))
+        for at, part in enumerate(books):
+            self._booked[at] += part
         density = self._stepper.density
         if density is not None:
             self._f_min = min(self._f_min, float(density.f.min()))
@@ -96,7 +97,8 @@ class Ledger:
         dx = self._scene.cells.dx
         row = {
             "mass": math.fsum(h) * dx, "momentum": math.fsum(q) * dx,
-            "h_min": self._h_min, "u_max": self._u_max, "courant": self._courant, **self._booked._asdict(),
+            "h_min": self._h_min, "u_max": self._u_max, "courant": self._courant,
+            **Books(*self._booked)._asdict(),
             "held": dx * held(self._stepper.now) if started else 0.0,
         }  # fmt: skip
         density = self._stepper.density
