@@ -18,6 +18,7 @@ from .kinetic.wing import Density
 from .method import Kinetic, Macroscopic
 from .run import Run, Verdict, VerdictKind
 from .scene import Scene
+from .sleep import Awake
 from .stepper import make_stepper
 from .watch.causes import Causes
 from .watch.dump import Dump, Recorder
@@ -129,6 +130,7 @@ class _Loop:
         self.first_reach = self.reached = 0.0
         self.outside = ""
         self.stepper = make_stepper(scene, method)
+        self.awake = Awake(scene, method, self.stepper)
         self.ledger = Ledger(scene, self.stepper)
         self.recorders: list[Recorder] = []
         self.causes: Causes | None = None
@@ -159,13 +161,15 @@ class _Loop:
 
     def run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
         """Step until the clock or a fault ends it."""
-        scene, clock, stepper = self.scene, self.clock, self.stepper
+        scene, clock, stepper, awake = self.scene, self.clock, self.stepper, self.awake
         dx, beta = scene.cells.dx, scene.beta
         self.ledger.start(self.h, self.q)
         self._save()
+        sleepy = self._same_length()
+        look = Survey(*survey(self.h, self.q, beta))
         while not interrupt.asked:
-            speed = stepper.begin(self.h, self.q)
-            reach = stepper.reach()
+            speed = awake.begin(self.h, self.q, sleepy if self._unseen() else None)
+            reach = awake.at.reach() if awake.at else 0.0
             dt = clock.next_dt(self.step, self.t, max(speed, self.fastest), dx)
             if dt is None:
                 self.reached = max(self.reached, reach)
@@ -185,9 +189,10 @@ class _Loop:
             cut = self._cut(stepper.density, reach)
             if cut is None:
                 return self.verdict("window-too-small", f"{self.outside}; stopped")
-            books = stepper.advance(dt)
-            h1, q1 = stepper.now.h1, stepper.now.q1
-            look = Survey(*survey(h1, q1, beta))
+            books = awake.advance(self.h, self.q, dt)
+            h1, q1 = awake.h1, awake.q1
+            if awake.at:
+                look = Survey(*survey(h1, q1, beta))
             if look.bad >= 0:
                 place = f"cell {look.bad} (x = {scene.x[look.bad]:.4g})"
                 return self.verdict("non-finite", f"h or q is not finite in {place}; stopped", look.bad)
@@ -197,7 +202,7 @@ class _Loop:
             last = self._accept(h1, q1, dt, after)
             if cut:
                 books = books._replace(window_loss=books.window_loss + dx * cut)
-            self.ledger.note(look, courant, books)
+            self.ledger.note(look, courant, books, awake.at.density if awake.at else None)
             self.fastest = look.fastest
             if last or self.step % self.save_every == 0:
                 self.ledger.save(self.h, self.q)
@@ -228,7 +233,8 @@ class _Loop:
         """The run as a value; the last good state is its last row."""
         if self.times[-1] != self.t:
             moving = isinstance(self.method, Kinetic) and isinstance(self.method.velocity, Window)
-            self.ledger.save(self.h, self.q, f_is_of_state=verdict.kind != "non-finite" and not moving)
+            shown = verdict.kind != "non-finite" and not moving and self.awake.at is self.stepper
+            self.ledger.save(self.h, self.q, f_is_of_state=shown)
             self._save()
         return Run(
             scene=self.scene, method=self.method, clock=self.clock, t=np.array(self.times),
@@ -261,6 +267,15 @@ class _Loop:
         self.step, self.t = self.step + 1, after
         self.dts.append(dt)
         return last
+
+    def _same_length(self) -> float | None:
+        """The length of all steps, if there is one and nobody looks into the density, so that cells may sleep."""
+        watched = self.recorders or self.causes
+        return self.clock.dt if isinstance(self.clock, Fixed) and self.awake.sleeps and not watched else None
+
+    def _unseen(self) -> bool:
+        """Whether the coming step leaves no row, for which the whole density would be asked."""
+        return (self.step + 1) % self.save_every != 0 and self.clock.next_dt(self.step + 1, 0.0, 0.0, 1.0) is not None
 
     def _settled(self, h1: Array, q1: Array, h_max: float) -> bool:
         """Whether a step changed nothing of a mass without motion; what only rounding moves must do so for a while."""

@@ -77,15 +77,14 @@ class Ledger:
         self._h_min, self._u_max = first[0], first[1]
         self.save(h, q, started=False)
 
-    def note(self, look: Survey, courant: float, books: Books) -> None:
-        """A step was taken."""
+    def note(self, look: Survey, courant: float, books: Books, density: Density | None) -> None:
+        """A step was taken, by cells with this density."""
         self._h_min, self._u_max = min(self._h_min, look.h_min), max(self._u_max, look.u_max)
         self._courant = max(self._courant, courant)
         self.least_height = min(self.least_height, look.h_min)
         self.worst_courant = max(self.worst_courant, courant)
         for at, part in enumerate(books):
             self._booked[at] += part
-        density = self._stepper.density
         if density is not None:
             self._f_min = min(self._f_min, float(density.f.min()))
             self.least_density = min(self.least_density, self._f_min)
