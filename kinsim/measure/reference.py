@@ -37,12 +37,20 @@ def _half(h: Array, u: Array, beta: float, k: int) -> Array:
 
 
 def on_grid(states: States, beta: float) -> tuple[Array, Array]:
-    """(F1, F2) of (24) by sums over a velocity grid, cell averages of M."""
+    """(F1, F2) of (24) by sums over a velocity grid, cell averages of M.
+
+    Each state has a grid that just reaches over its own velocities: in units of its largest |u| + c and of beta = 1
+    all of them are the same.
+    """
     h_left, u_left, h_right, u_right = states
-    reach = max(float(np.max(np.abs(u) + np.sqrt(2.0 * beta * h))) for h, u in ((h_left, u_left), (h_right, u_right)))
-    grid = Grid(NODES, 2.0 * reach / NODES)
+    c_left, c_right = (np.sqrt(2.0 * beta * h) for h in (h_left, h_right))
+    reach = np.maximum(np.abs(u_left) + c_left, np.abs(u_right) + c_right)
+    reach = np.where(reach > 0.0, reach, np.sqrt(beta))
+    left, right = ((0.5 * (c / reach) ** 2, u / reach) for c, u in ((c_left, u_left), (c_right, u_right)))
+    grid = Grid(NODES, 2.0 / NODES)
     rows, room = np.empty((h_left.size, NODES)), EQUILIBRIA["cell-average"]
-    room.fill(h_left, u_left, h_right, u_right, beta, grid, rows, Status.empty(h_left.size))
+    room.fill(*left, *right, 1.0, grid, rows, Status.empty(h_left.size))
     P1, P2, N1, N2 = np.empty((4, h_left.size))
     half_sums(rows, *room.weights(grid), P1, P2, N1, N2)
-    return P1 + N1, P2 + N2
+    unit = (reach / np.sqrt(beta)) ** 2  # of heights
+    return unit * reach * (P1 + N1), unit * reach * reach * (P2 + N2)
