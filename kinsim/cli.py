@@ -210,6 +210,9 @@ def compare(
 def crosscheck(
     flux: Annotated[str, typer.Argument(metavar="MODULE:NAME", help="A flux(hl, ul, hr, ur, beta) -> (F1, F2).")],
     beta: Annotated[float, typer.Option(help="As in equation (1).")] = 0.4,
+    count: Annotated[int, typer.Option(help="Random states per regime.")] = 400,
+    tolerance: Annotated[float, typer.Option(help="Largest error allowed, in flux scales.")] = 1e-12,
+    seed: Annotated[int, typer.Option(help="Of the random states.")] = 0,
 ) -> None:
     """Judge a flux of your own, regime by regime: quadrature, grid, consistency, mirror symmetry.
 
@@ -219,7 +222,7 @@ def crosscheck(
     from .report import crosscheck_report
     from .userflux import load_flux
 
-    found = crosscheck(load_flux(flux), beta=beta)
+    found = crosscheck(load_flux(flux), beta=beta, count=count, tolerance=tolerance, seed=seed)
     crosscheck_report(found, flux)
     raise typer.Exit(0 if found.passes else 1)
 

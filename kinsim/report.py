@@ -150,6 +150,8 @@ def crosscheck_report(found: CrossCheck, name: str) -> None:
     for regime in found.regimes:
         errors = (regime.quadrature, regime.grid, regime.consistency, regime.mirror)
         mark = "[green]passes[/]" if regime.passes else "[red]fails[/]"
+        if regime.failure and regime.failure.raised:
+            mark = f"[red]fails[/], raised {escape(regime.failure.raised.split(':')[0])}"
         table.add_row(regime.name, *(f"{error:.1e}" for error in errors), mark)
     console = Console()
     console.print(table)

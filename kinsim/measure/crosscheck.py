@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any
@@ -36,7 +37,8 @@ class Failure:
         check: Which one.
         state: h_left, u_left, h_right, u_right.
         beta: The beta that the flux was asked at.
-        found, expected: (F1, F2) as given and as they should be.
+        found, expected: (F1, F2) as given, NaN if it raised, and as they should be.
+        raised: What it raised there, in one line; empty if it gave an answer.
     """
 
     check: str
@@ -44,14 +46,17 @@ class Failure:
     beta: float
     found: tuple[float, float]
     expected: tuple[float, float]
+    raised: str = ""
 
     def __str__(self) -> str:
-        return f"{self.check}: flux{(*self.state, self.beta)} = {self.found}, expected {self.expected}"
+        answer = f"raised {self.raised}" if self.raised else f"= {self.found}"
+        return f"{self.check}: flux{(*self.state, self.beta)} {answer}, expected {self.expected}"
 
 
 @dataclass(frozen=True)
 class Regime:
-    """What was found in one regime; errors are maxima over its states, in flux scales h (|u| + c)^k of the two sides.
+    """What was found in one regime; errors are maxima over its states, in flux scales h (|u| + c)^k of the two sides,
+    and infinite where the flux raises.
 
     Attributes:
         name: Which regime.
@@ -99,6 +104,8 @@ def crosscheck(
 ) -> CrossCheck:
     """Check a numerical flux of the kinetic scheme, regime by regime.
 
+    A flux that raises fails; the first state at which it does is sought.
+
     Args:
         flux: Vectorised, ``flux(h_left, u_left, h_right, u_right, beta) -> (F1, F2)`` for arrays of one shape.
         beta: As in (1), > 0 and at most 1e15; the flux is asked at 2.3 beta, too.
@@ -107,7 +114,8 @@ def crosscheck(
         seed: Of the random states.
 
     Raises:
-        InputError: The flux raises, or does not return two arrays of the shape it was given; or a number is none.
+        InputError: The flux takes one state at a time, or does not return two real arrays of the shape it was given;
+            or a number is none.
     """
     given = {"beta": beta, "count": count, "tolerance": tolerance, "seed": seed}
     beta, count, tolerance, seed = (checked(f"crosscheck: {name}", ASKED[name], given[name]) for name in given)
@@ -134,44 +142,92 @@ def _judge(name: str, states: States, flux: Flux, beta: float, tolerance: float)
     h_left, u_left, h_right, u_right = states
     mirrored = (h_right, -u_right, h_left, -u_left)
     same = (h_left, u_left, h_left, u_left)
-    found, turned, alone = (_ask(flux, given, beta) for given in (states, mirrored, same))
+    (found, error), (turned, error_turned), (alone, error_alone) = (
+        _ask(flux, given, beta) for given in (states, mirrored, same)
+    )
     scale = _scale(h_left, u_left, beta) + _scale(h_right, u_right, beta)
     exact = by_quadrature(states, beta)
     closed = (h_left * u_left, h_left * u_left**2 + 0.5 * beta * h_left**2)
     checks = (
-        ("quadrature", states, found, exact, scale),
-        ("consistency F(U, U)", same, alone, closed, 2.0 * _scale(h_left, u_left, beta)),
-        ("mirror symmetry", states, found, (-turned[0], turned[1]), scale),
+        ("quadrature", states, found, exact, scale, error),
+        ("consistency F(U, U)", same, alone, closed, 2.0 * _scale(h_left, u_left, beta), error_alone),
+        ("mirror symmetry", mirrored if error_turned else states, found, (-turned[0], turned[1]), scale, error_turned),
     )
     errors, failure = [], None
-    for check, given, got, expected, size in checks:
+    for check, given, got, expected, size, raised in checks:
         off = _off(got, expected, size)
         errors.append(float(off.max()))
         bad = np.flatnonzero(~(off <= tolerance))
         if failure is None and bad.size:
-            i = int(bad[0])
+            i = _first_raising(flux, given, beta) if raised else int(bad[0])
             state = (float(given[0][i]), float(given[1][i]), float(given[2][i]), float(given[3][i]))
-            pairs = [(float(pair[0][i]), float(pair[1][i])) for pair in (got, expected)]
-            failure = Failure(f"{check}, {name}", state, beta, pairs[0], pairs[1])
+            if raised:
+                expected = by_quadrature(given, beta)
+            answer, right = ((float(pair[0][i]), float(pair[1][i])) for pair in (got, expected))
+            if raised:
+                answer = (math.nan, math.nan)
+            failure = Failure(f"{check}, {name}", state, beta, answer, right, raised)
     grid = float(_off(found, on_grid(states, beta), scale).max())
     return Regime(name, errors[0], grid, errors[1], errors[2], failure)
 
 
-def _ask(flux: Flux, states: States, beta: float) -> tuple[Array, Array]:
+def _ask(flux: Flux, states: States, beta: float) -> tuple[tuple[Array, Array], str]:
+    """The answer, and what the flux raised instead, NaN being the answer then."""
     try:
-        with np.errstate(all="ignore"):
-            first, second = (np.asarray(part) for part in flux(*(s.copy() for s in states), beta))
-        if np.iscomplexobj(first) or np.iscomplexobj(second):
-            raise TypeError("it returned complex numbers")
-        first, second = first.astype(float), second.astype(float)
+        first, second = _call(flux, states, beta)
     except (Exception, SystemExit) as error:  # somebody else's code may raise anything
-        said = " ".join(str(error).split())
-        raise InputError(f"crosscheck: the flux failed with {type(error).__name__}: {said}") from error
-    if first.shape != states[0].shape or second.shape != states[0].shape:
-        raise InputError(
-            f"crosscheck: the flux returned shapes {first.shape} and {second.shape} for states of {states[0].shape}"
-        )
+        _refuse_single(flux, states, beta, error)
+        nothing = np.full(states[0].shape, np.nan)
+        return (nothing, nothing), _said(error)
+    for part in (first, second):
+        if part.shape != states[0].shape:
+            raise InputError(
+                f"crosscheck: the flux returned shapes {first.shape} and {second.shape} "
+                f"for states of {states[0].shape}; return two arrays of the shape of h_left"
+            )
+        if part.dtype.kind not in "biuf":
+            raise InputError(f"crosscheck: the flux returned numbers of type {part.dtype}; return real ones")
+    return (first.astype(float), second.astype(float)), ""
+
+
+def _call(flux: Flux, states: States, beta: float) -> tuple[Array, Array]:
+    with np.errstate(all="ignore"):
+        first, second = (np.asarray(part) for part in flux(*(s.copy() for s in states), beta))
     return first, second
+
+
+def _said(error: BaseException) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())}".removesuffix(": ")
+
+
+def _raises(flux: Flux, states: Any, beta: float) -> bool:
+    try:
+        _call(flux, states, beta)
+    except (Exception, SystemExit):
+        return True
+    return False
+
+
+def _refuse_single(flux: Flux, states: States, beta: float, error: BaseException) -> None:
+    """A flux that takes the first states one by one as numbers, but not two of them together, is not vectorised."""
+    both = tuple(np.repeat(s[:1], 2) for s in states)
+    if _raises(flux, both, beta) and not _raises(flux, tuple(s[0] for s in states), beta):
+        raise InputError(
+            f"crosscheck: the flux takes single numbers, not arrays ({_said(error)}); vectorise it, e.g. "
+            "np.vectorize(flux)"
+        )
+
+
+def _first_raising(flux: Flux, states: States, beta: float) -> int:
+    """The first state that the flux raises at when it comes alone; the last if it raises at many together only."""
+    low, high = 0, states[0].size  # none of the first `low` states raises, some of the first `high` does
+    while high - low > 1:
+        middle = (low + high) // 2
+        if _raises(flux, tuple(s[low:middle] for s in states), beta):
+            high = middle
+        else:
+            low = middle
+    return low
 
 
 def _scale(h: Array, u: Array, beta: float) -> Array:
