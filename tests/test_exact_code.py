@@ -63,13 +63,15 @@ def l1(exact: Any, run: Run, inner: tuple[float, float]) -> np.ndarray:
 
 DOWN, UP = {"pull": 0.4, "resistance": 0.3}, {"pull": 0.3, "resistance": 0.4}
 
-ORDER = {"smooth": 0.98, "rough": 0.5}
+ORDER = {"smooth": 0.96, "rough": 0.5}
 
 # exact solution, end, L1 error of h allowed at dx = 0.025, order; those of q are as large but for a factor 1.5
 APPROACHED = {
     "sliding wedge": (SlidingWedge(2.0, 0.1, 0.5, BETA, **DOWN), 1.0, 0.0004, "smooth"),
     "sliding wedge, slowing down": (SlidingWedge(2.5, 0.1, 0.5, BETA, **UP), 1.0, 0.0004, "smooth"),
     "wedge to the left": (SlidingWedge(2.0, 0.1, -0.5, BETA, -0.4, 0.3), 1.0, 0.0004, "smooth"),
+    "wedge with a dry toe in front": (SlidingWedge(0.8, -0.2, 0.5, BETA, **DOWN), 1.0, 0.004, "smooth"),
+    "wedge with a dry toe behind": (SlidingWedge(0.2, 0.2, 0.6, BETA, **DOWN), 1.0, 0.004, "smooth"),
     "fan and shock": (AcceleratedRiemann(Riemann(1, 1.2, 0.4, 1.0, BETA), **DOWN), 2.0, 0.04, "rough"),
     "two shocks": (AcceleratedRiemann(Riemann(0.6, 1.8, 0.4, 0.9, BETA), **UP), 2.0, 0.045, "rough"),
     "to the left": (AcceleratedRiemann(Riemann(0.4, -1, 1, -1.2, BETA, 3), **UP), 1.2, 0.04, "rough"),
@@ -85,12 +87,12 @@ APPROACHED = {
 
 @pytest.mark.parametrize("name", APPROACHED)
 def test_scheme_1_approaches_it(name: str) -> None:
-    """Four times as many cells; wedges between places that no open end has reached.
+    """Four times as many cells; wedges between places that no open end has reached, their toes included.
 
     A factor of four evens out where a shock happens to be within a cell.
     """
     exact, end, allowed, kind = APPROACHED[name]
-    inner = (-1.5, 3.5) if kind == "smooth" else (-3.0, 7.0)
+    inner = (-1.5, 3.5) if kind == "smooth" and "toe" not in name else (-3.0, 7.0)
     coarse, fine = (
         l1(exact, run_scene(scene(exact, Cells(-5, 9, count)), Macroscopic(1), Courant(0.9, end)), inner)
         for count in (140, 560)

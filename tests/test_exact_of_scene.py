@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from kinsim import Blocks, ConstantSlope, Coulomb, Fixed, Macroscopic, load_scene, simulate
-from kinsim.exact import AcceleratedRiemann, Riemann
+from kinsim import Blocks, ConstantSlope, Coulomb, Expression, Fixed, Macroscopic, load_scene, simulate
+from kinsim.exact import AcceleratedRiemann, Riemann, UniformSlide
 from kinsim.exact.of_scene import exact_of
 from kinsim.plot import draw
 
@@ -19,6 +19,24 @@ def test_two_blocks_have_one() -> None:
     np.testing.assert_array_equal(found(scene.x, 0.0)[0], scene.initial()[0])
     steep = replace(scene, chute=ConstantSlope(0.5), friction=Coulomb(0.3))
     assert isinstance(exact_of(steep), AcceleratedRiemann)
+
+
+def test_a_layer_that_is_the_same_everywhere_slides() -> None:
+    """However it is written; the picture of its run has the overlay."""
+    scene, _, _ = load_scene("riemann")
+    layer = replace(scene, heap=Blocks((), (0.7,)), chute=ConstantSlope(0.5), friction=Coulomb(0.3))
+    found = exact_of(layer)
+    assert found == UniformSlide(0.0, layer.chute.sin, layer.resistance, 0.7)
+    for boundary in ("open", "periodic"):
+        moving = replace(layer, heap=Expression("1.5", "0.2"), boundary=boundary)
+        assert exact_of(moving) == UniformSlide(0.2, layer.chute.sin, layer.resistance, 1.5)
+        run = simulate(moving, Macroscopic(1), Fixed(1e-2, 50), 25)
+        np.testing.assert_allclose(run.u[-1], exact_of(moving)(run.x, 0.5)[1], rtol=1e-13)
+        heights = draw(run).axes[0]
+        assert [line for line in heights.lines if line.get_linestyle() == "--"]
+    assert exact_of(replace(layer, boundary="wall")) is None
+    assert exact_of(replace(layer, heap=Blocks((), (0.0,)))) is None
+    assert exact_of(replace(layer, heap=Expression("1.5", "0.2 + 0.1*x"))) is None
 
 
 def test_others_have_none() -> None:

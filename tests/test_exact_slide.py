@@ -94,6 +94,8 @@ WEDGES = {
     "stays": SlidingWedge(2.0, -0.2, 0.3, BETA, 0.1, 0.4),
     "turns": SlidingWedge(2.0, 0.3, 0.3, BETA, -0.2, 0.1),
     "from the left": SlidingWedge(2.0, 0.3, -0.6, BETA, 0.5, 0.1),
+    "toe, running": SlidingWedge(0.5, -0.5, 0.5, BETA, 0.4, 0.2),
+    "toe, that stays": SlidingWedge(0.4, -0.5, 0.3, BETA, 0.0, 0.4),
 }
 
 
@@ -126,9 +128,15 @@ def test_wedge_solves_the_equations(wedge: SlidingWedge, t: float) -> None:
 
 
 def test_wedge_averages_are_exact(wedge: SlidingWedge) -> None:
-    """h is linear, so that its average is its value at the centre; u is the same everywhere."""
-    cells = Cells(-2, 3, 13)
-    h, u = wedge(cells.x, 1.7)
+    """h is linear, so that its average is its value at the centre of what is wet; u is the same there."""
+    cells, toe = Cells(-2, 3, 13), wedge.toe(1.7)
+    edges = np.linspace(-2, 3, 14)
+    if wedge.b < 0.0:
+        begin, end = edges[:-1], np.maximum(np.minimum(edges[1:], toe), edges[:-1])
+    else:
+        begin, end = np.minimum(np.maximum(edges[:-1], toe), edges[1:]), edges[1:]
+    h, u = wedge(0.5 * (begin + end), 1.7)
+    h *= (end - begin) / cells.dx
     averages = wedge.averages(cells, 1.7)
     np.testing.assert_allclose(averages, [h, h * u], rtol=8 * EPS, atol=8 * EPS)
 
@@ -156,12 +164,18 @@ def test_wedge_is_arrested_iff_the_slope_is_admissible(rng: np.random.Generator)
 
 
 def test_wedge_ends_where_it_is_dry() -> None:
-    wedge = SlidingWedge(1.0, -0.5, 0.4, BETA)
-    assert wedge([1.0, 2.0], 0.0)[0].tolist() == [0.5, 0.0]
-    assert wedge(2.0, 0.0)[1] == 0.0
-    for ask in (lambda: wedge([1.0, 2.001], 0.0), lambda: wedge.averages(Cells(0, 2.1, 3), 0.0)):
-        with pytest.raises(kinsim.InputError, match=r"h < 0 at x = 2\.\d+, t = 0"):
-            ask()
+    """The toe goes the way of the wedge, so that the mass beside it stays; h and q end in 0 there."""
+    wedge = SlidingWedge(1.0, -0.5, 0.4, BETA, 0.3, 0.2)
+    assert wedge([1.0, 2.0, 2.001, 9.0], 0.0)[0].tolist() == [0.5, 0.0, 0.0, 0.0]
+    assert wedge([2.0, 9.0], 0.0)[1].tolist() == [0.0, 0.0]
+    for t in (0.0, 0.7, 3.0):
+        way = wedge.motion(t)[1]
+        assert wedge.toe(t) == pytest.approx(2.0 + way, abs=8 * EPS * (1 + way))
+        h, q = wedge.averages(Cells(way, way + 20, 41), t)
+        assert h.sum() * 20 / 41 == pytest.approx(1.0, rel=1e-13)
+        assert q.sum() * 20 / 41 == pytest.approx(wedge.motion(t)[0], rel=1e-13)
+        assert wedge(wedge.toe(t) - 1e-9, t)[0] == pytest.approx(0.5e-9, rel=1e-5)
+    assert SlidingWedge(1.0, 0.0, 0.4, BETA).toe(1.0) == math.inf
 
 
 @pytest.mark.parametrize("exact", [UniformSlide(1.0, 0.0), SlidingWedge(1.0, 0.1, 0.0, BETA)])
@@ -173,6 +187,8 @@ def test_questions_outside(exact: UniformSlide | SlidingWedge) -> None:
             exact.averages(Cells(-1, 1, 2), t)
     with pytest.raises(kinsim.InputError, match="not a number"):
         exact(math.nan, 1.0)
+    with pytest.raises(kinsim.InputError, match="^averages: cells is of type int; give kinsim.Cells"):
+        exact.averages(5, 0.1)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("wrong", [{"resistance": -0.1}, {"h": 0.0}, {"u0": math.nan}])

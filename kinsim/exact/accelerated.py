@@ -10,6 +10,7 @@ from ..model.cells import Cells
 from ..value import Number, value
 from . import sliding
 from .domain import Array, NonNegative, finite, moment, places
+from .quadrature import known
 from .riemann import Riemann
 
 
@@ -67,6 +68,7 @@ class AcceleratedRiemann:
         """
         t = moment("AcceleratedRiemann", t, self.until)
         way = self.way(t)
+        known(cells)
         h, q = self.riemann.averages(Cells(cells.left - way, cells.right - way, cells.count), t)
         return h, q + self.m * t * h
 

@@ -6,14 +6,19 @@ from ..model.heap import Blocks
 from ..scene import Scene
 from .accelerated import AcceleratedRiemann
 from .riemann import Riemann
+from .slide import UniformSlide
 
 
-def exact_of(scene: Scene) -> Riemann | AcceleratedRiemann | None:
+def exact_of(scene: Scene) -> Riemann | AcceleratedRiemann | UniformSlide | None:
     """Of two blocks that meet: the Riemann solution, in the accelerated frame where gravity outweighs friction.
 
-    It knows no ends, and so only open ones will do.
+    It knows no ends, and so only open ones will do. Of a layer that is the same everywhere, between open or periodic
+    ends: the slide.
     """
     heap = scene.heap
+    h, u = heap(scene.cells.x)
+    if h[0] > 0.0 and (h == h[0]).all() and (u == u[0]).all() and scene.boundary in ("open", "periodic"):
+        return UniformSlide(float(u[0]), scene.chute.sin, scene.resistance, float(h[0]))
     if not isinstance(heap, Blocks) or len(heap.edges) != 1 or scene.boundary != "open":
         return None
     frame = Riemann(heap.heights[0], 0.0, heap.heights[1], 0.0, beta=scene.beta, x0=heap.edges[0])

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from ..errors import InputError
 from ..model.cells import Cells
 from .domain import Array
 
@@ -15,8 +16,23 @@ GAUSS = 0.5 / math.sqrt(3.0)
 
 
 def cell_edges(cells: Cells) -> Array:
-    """The walls between cells, shape (cells.count + 1,)."""
+    """The walls between cells, shape (cells.count + 1,).
+
+    Raises:
+        InputError: `cells` is something else.
+    """
+    known(cells)
     return cells.left + (cells.right - cells.left) * np.arange(cells.count + 1) / cells.count
+
+
+def known(cells: Cells) -> None:
+    """Let `cells` be cells.
+
+    Raises:
+        InputError: It is something else.
+    """
+    if not isinstance(cells, Cells):
+        raise InputError(f"averages: cells is of type {type(cells).__name__}; give kinsim.Cells(left, right, count)")
 
 
 def averages(

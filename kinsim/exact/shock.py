@@ -36,7 +36,7 @@ class TravellingShock:
     Source: J. J. Stoker, Water Waves (1957), ch. 10, for m = 0; the frame as in `AcceleratedRiemann`.
 
     Attributes:
-        h_left, h_right: Heights, > 0 (dimensionless).
+        h_left, h_right: Heights, > 0 and unlike (dimensionless).
         u_left: Velocity of the left layer at t = 0 (dimensionless); that of the right one follows.
         beta: As in (1), > 0.
         pull: s = sin zeta (dimensionless).
@@ -53,6 +53,8 @@ class TravellingShock:
     x0: Number = 0.0
 
     def __post_init__(self) -> None:
+        if self.h_left == self.h_right:
+            raise ValueError(f"h_left = h_right = {self.h_left:g} leaves no shock; take unlike ones, or UniformSlide")
         if not (held(self.u_right, self.speed) and held(self.m)):
             raise ValueError(TOO_FAR)
 

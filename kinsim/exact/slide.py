@@ -9,6 +9,7 @@ from ..model.cells import Cells
 from ..value import Number, value
 from .domain import Array, NonNegative, Positive, finite, moment, places
 from .motion import Motion
+from .quadrature import known
 
 
 @value
@@ -52,6 +53,7 @@ class UniformSlide:
         Raises:
             InputError: t is negative or not finite.
         """
+        known(cells)
         h, u = self(cells.x, t)
         return h, h * u
 

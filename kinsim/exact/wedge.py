@@ -1,36 +1,41 @@
-"""A wedge of constant slope that slides as one body, stops and may slide back."""
+"""A wedge of constant slope, up to its toe on dry ground, that slides as one body, stops and may slide back."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..errors import InputError
 from ..model.cells import Cells
 from ..value import Number, value
 from .domain import Array, NonNegative, Positive, finite, moment, places
 from .motion import Motion
-from .quadrature import averages, cell_edges
+from .quadrature import averages
 
 
 @value
 class SlidingWedge:
     """(1) with a height that is linear in x and one velocity; call it with (x, t) to get h, u.
 
-        h = a + b (x - X),  X = int_0^t u dt,    u' = s - beta b - sgn(u) R,  s = sin zeta:
+        h = max(0, a + b (x - X)),  X = int_0^t u dt,    u' = s - beta b - sgn(u) R,  s = sin zeta:
 
     h_t + u h_x = b (-u) + u b = 0, and beta h_x = beta b is the same everywhere, so that the velocity stays uniform.
     The wedge is arrested for ever iff |s - beta b| <= R, which is Definition 1; else it turns, see
     `kinsim.exact.motion`.
 
-    Valid for all t >= 0 and all x with h >= 0. The line goes on below h = 0 only on paper: a toe on dry ground would
-    collapse or run, so that other x are refused. u = 0 where h = 0.
+    Where the line would go below h = 0 the ground is dry: the toe, at x = X - a/b, moves with u like all of the wedge.
+    There h is continuous and so are h u and h u^2 + beta h^2/2, so that no jump needs a condition and (1) holds in the
+    weak sense across it. The toe neither runs ahead nor lags behind, as beta h_x is the same there as elsewhere: what
+    runs onto dry ground in a dam break is a front that starts from a jump.
+
+    Valid for all x and t >= 0. u = 0 where h = 0.
 
     Source: derived above; with b = 0 it is `UniformSlide`.
 
     Attributes:
         a: Height at x = 0, t = 0 (dimensionless).
-        b: Slope h_x (dimensionless).
+        b: Slope h_x where it is wet (dimensionless).
         u0: Velocity at t = 0 (dimensionless).
         beta: As in (1), > 0.
         pull: s = sin zeta (dimensionless).
@@ -49,14 +54,11 @@ class SlidingWedge:
         """Height and velocity at the places `x` at the time `t`, each of the shape of `x`.
 
         Raises:
-            InputError: t is negative or not finite, an x is not a number, or h < 0 there.
+            InputError: t is negative or not finite, or an x is not a number.
         """
         there = places("SlidingWedge", x)
         u, way = self.motion(moment("SlidingWedge", t))
-        h: Array = self.a + self.b * (there - way)
-        if (h < 0.0).any():
-            outside = float(there[h < 0.0].flat[0])
-            raise InputError(f"SlidingWedge: h < 0 at x = {outside:.6g}, t = {t:.6g}; stay where a + b (x - X) >= 0")
+        h = np.maximum(0.0, self.a + self.b * (there - way))
         return h, np.where(h > 0.0, u, 0.0)
 
     @finite
@@ -64,10 +66,19 @@ class SlidingWedge:
         """Averages of h and of q = h u over each of the `cells` at the time `t`, exact, each of shape (cells.count,).
 
         Raises:
-            InputError: t is negative or not finite, or h < 0 somewhere in a cell.
+            InputError: t is negative or not finite.
         """
-        self(cell_edges(cells), t)
-        return averages(lambda x: self(x, t), (), cells)
+        return averages(lambda x: self(x, t), (self.toe(t),), cells)
+
+    def toe(self, t: float) -> float:
+        """Where the dry ground begins at the time `t`; infinity for b = 0.
+
+        Raises:
+            InputError: t is negative or not finite.
+        """
+        way = self.motion(moment("SlidingWedge", t))[1]
+        with np.errstate(all="ignore"):
+            return float(way - np.float64(self.a) / self.b) if self.b else math.inf
 
     @property
     def motion(self) -> Motion:

@@ -80,6 +80,7 @@ CASES = {
     "wedge": Case(SlidingWedge(2.0, 0.1, 0.5, BETA, **DOWN), 1.0, MIDDLE, SMOOTH),
     "steep wedge": Case(SlidingWedge(1.0, 0.1, 1.0, BETA, **STEEP), 1.0, MIDDLE, SMOOTH),
     "wedge that stops": Case(SlidingWedge(2.0, 0.1, 0.3, BETA, **HELD), 1.5, MIDDLE, SMOOTH, rests=True),
+    "wedge with a dry toe": Case(SlidingWedge(0.8, -0.2, 0.5, BETA, **DOWN), 1.0, (-2.0, 8.0), SMOOTH, wet=False),
     "pile": Case(StaticPile(0.6, -0.6, BETA, **HELD, h0=2.0, x0=2.0, floor=0.5), 1.5, rests=True),
     "cap": Case(ParabolicCap(1, 1, BETA, **DOWN, u0=1.5), 1.5, wet=False),
     "fan and shock": Case(AcceleratedRiemann(Riemann(1, 1.2, 0.4, 1.0, BETA), **DOWN), 2.0),
