@@ -187,7 +187,7 @@ def test_questions_outside(exact: UniformSlide | SlidingWedge) -> None:
             exact.averages(Cells(-1, 1, 2), t)
     with pytest.raises(kinsim.InputError, match="not a number"):
         exact(math.nan, 1.0)
-    with pytest.raises(kinsim.InputError, match="^averages: cells is of type int; give kinsim.Cells"):
+    with pytest.raises(kinsim.InputError, match=r"^averages: cells is of type int; give kinsim.Cells"):
         exact.averages(5, 0.1)  # type: ignore[arg-type]
 
 

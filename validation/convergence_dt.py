@@ -56,7 +56,7 @@ def main(chapter: Chapter) -> None:
 
 WEDGES = ("wedge", "steep wedge", "wedge that stops")
 APART = {
-    *((1, name) for name in ("wedge that stops", "pile", "dam on dry ground")),
+    *((1, name) for name in ("wedge that stops", "wedge with a dry toe", "pile", "dam on dry ground")),
     *((2, name) for name in ("pile", "fan and shock", "shock", "dam on a wet bed", "dam without friction")),
     *((3, name) for name in ("wedge that stops", "pile")),
 }
