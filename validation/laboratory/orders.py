@@ -72,7 +72,7 @@ def picture(rows: Sequence[Sequence[Panel]], width: str, error: str, powers: Seq
     return figure
 
 
-_DASHES = {0.5: "--", 1.0: ":", 1.5: "-", 2.0: "-.", 3.0: (0, (8, 3))}
+_DASHES = {0.5: "--", 1.0: ":", 1.5: "-", 2.0: "-.", 2.5: (0, (5, 1, 1, 1)), 3.0: (0, (8, 3))}
 
 
 def halvings(first: int, count: int) -> list[int]:
