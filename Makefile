@@ -4,11 +4,12 @@ PYTHON ?= python3
 BIN := .venv/bin
 SHELL := /bin/sh
 
-.PHONY: help demo test check clean
+.PHONY: help demo test check bench clean
 
 help:
 	@echo "make demo    install, run the silo with both wings, write out/silo.nc and out/silo.png"
 	@echo "make test    install, lint, type-check, run all tests"
+	@echo "make bench   install, measure speed and memory against the targets, write out/benchmarks.json"
 	@echo "make clean   remove the environment and everything that was made"
 
 .venv/installed: pyproject.toml
@@ -29,6 +30,9 @@ check: .venv/installed
 
 test: check
 	$(BIN)/pytest --quiet --numprocesses 2
+
+bench: .venv/installed
+	$(BIN)/python benchmarks/run.py
 
 clean:
 	rm -rf .venv out build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis

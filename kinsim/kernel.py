@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numba
 import platformdirs
@@ -80,6 +80,23 @@ def kernel(function: F) -> F:
 
     Kernels take arrays and scalars and write into arrays they are given. Division by zero gives infinity, as in numpy.
     """
-    dispatcher: Any = numba.njit(error_model="numpy")(function)
+    return _kept(numba.njit(error_model="numpy"), function)
+
+
+def kernel_part(function: F) -> F:
+    """A kernel that is laid into every kernel that calls it: for the insides of loops, where a call would cost."""
+    return _kept(numba.njit(error_model="numpy", forceinline=True), function)
+
+
+def kernel_relaxed(*flags: Literal["contract", "reassoc", "nsz"]) -> Callable[[F], F]:
+    """Such a part whose rounding the compiler may change, so that it runs in vector registers; NaN and infinity stay.
+
+    "reassoc" and "nsz" take sums over a loop in any order, "contract" rounds a product and a sum together.
+    """
+    return lambda function: _kept(numba.njit(error_model="numpy", forceinline=True, fastmath=set(flags)), function)
+
+
+def _kept(njit: Callable[[F], Any], function: F) -> F:
+    dispatcher = njit(function)
     dispatcher._cache = _Cache(function)  # type: ignore[no-untyped-call]
     return dispatcher  # type: ignore[no-any-return]

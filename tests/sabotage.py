@@ -18,10 +18,13 @@ from kinsim.macroscopic import wing
 def printed_flux() -> None:
     """The closed-form fluxes with the misprints of the paper, I3 among them."""
 
-    def flux(hl: Any, ul: Any, hr: Any, ur: Any, beta: float, F1: np.ndarray, F2: np.ndarray) -> None:
+    def flux(hl: Any, ul: Any, hr: Any, ur: Any, beta: float, room: Any, F1: np.ndarray, F2: np.ndarray) -> None:
         F1[:], F2[:] = printed.flux(hl, ul, hr, ur, beta)
 
-    wing.flux_closed = flux
+    def of_cells(h: Any, u: Any, beta: float, room: Any, F1: np.ndarray, F2: np.ndarray) -> None:
+        flux(h[:-1], u[:-1], h[1:], u[1:], beta, room, F1, F2)
+
+    wing.flux_closed, wing.flux_of_cells = flux, of_cells
 
 
 def reversed_shift() -> None:

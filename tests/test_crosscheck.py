@@ -24,7 +24,7 @@ def closed(
     hl: np.ndarray, ul: np.ndarray, hr: np.ndarray, ur: np.ndarray, beta: float
 ) -> tuple[np.ndarray, np.ndarray]:
     F1, F2 = np.empty_like(hl), np.empty_like(hl)
-    flux_closed(hl, ul, hr, ur, beta, F1, F2)
+    flux_closed(hl, ul, hr, ur, beta, np.empty((4, hl.size)), F1, F2)
     return F1, F2
 
 

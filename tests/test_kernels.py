@@ -63,10 +63,16 @@ def example(kernel: object) -> list[object]:
             arguments.append(dice.uniform(0.1, 1.0, nx + 2))
         elif kind == "Array" and name in ("h_ghosted", "u_ghosted"):
             arguments.append(np.zeros(nx + 2))
+        elif kind == "Array" and name == "m":
+            arguments.append(dice.uniform(0.1, 1.0, (5, nx + (1 if "h_left" in dict(names) else 2))))
+        elif kind == "Array" and name in ("h", "u", "m1", "m2") and name_of.endswith("of_cells"):
+            arguments.append(dice.uniform(0.1, 1.0, nx + 2))
+        elif kind == "Array" and name == "out" and name_of == "half_moments_of_cells":
+            arguments.append(np.zeros((4, nx + 2)))
         elif (
             kind == "Array"
             and name in ("h_left", "u_left", "h_right", "u_right")
-            and name_of in ("balanced", "flux_closed", "flux_fitted")
+            and name_of in ("balanced", "flux_closed", "flux_fitted", "faces_of_states")
         ):
             arguments.append(dice.uniform(0.1, 1.0, nx + 1))
         elif kind == "Array":

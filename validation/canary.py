@@ -61,7 +61,7 @@ def main(chapter: Chapter) -> None:
 def closed_flux(h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float) -> tuple[Array, Array]:
     """The flux that the macroscopic wing takes."""
     F1, F2 = np.empty_like(h_left), np.empty_like(h_left)
-    wing.flux_closed(h_left, u_left, h_right, u_right, beta, F1, F2)
+    wing.flux_closed(h_left, u_left, h_right, u_right, beta, np.empty((4, F1.size)), F1, F2)
     return F1, F2
 
 

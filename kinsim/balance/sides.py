@@ -2,19 +2,53 @@
 
 from __future__ import annotations
 
-from ..kernel import kernel
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel import kernel, kernel_part
+
+Array = NDArray[np.float64]
 
 
-@kernel
+@kernel_part
+def ahead(h: float, u: float, beta: float, m1: float, m2: float) -> tuple[float, float]:
+    """Moments of xi M and xi^2 M over xi > 0; m1, m2 >= 0 are those of the smaller side, mirrored."""
+    h = max(h, 0.0)
+    total1 = h * u
+    total2 = h * u * u + 0.5 * beta * h * h
+    first = total1 + m1 if u > 0.0 else m1
+    second = total2 - m2 if u > 0.0 else (m2 if u < 0.0 else 0.5 * total2)
+    return first, second
+
+
+@kernel_part
 def both_sides(h: float, u: float, beta: float, m1: float, m2: float) -> tuple[float, float, float, float]:
-    """Moments of xi M and xi^2 M over xi >= 0, then over xi < 0; m1, m2 >= 0 are those of the smaller side, mirrored.
+    """Moments of xi M and xi^2 M over xi >= 0, then over xi < 0.
 
     Mirrored states give bitwise mirrored moments, and both sides add up to the totals.
     """
-    total1 = h * u
-    total2 = h * u * u + 0.5 * beta * h * h
-    if u == 0.0:
-        return m1, 0.5 * total2, -m1, 0.5 * total2
-    if u > 0.0:
-        return total1 + m1, total2 - m2, -m1, m2
-    return m1, m2, total1 - m1, total2 - m2
+    p1, p2 = ahead(h, u, beta, m1, m2)
+    n1, n2 = ahead(h, -u, beta, m1, m2)
+    return p1, p2, -n1, n2
+
+
+@kernel
+def faces_of_cells(h: Array, u: Array, beta: float, m1: Array, m2: Array, F1: Array, F2: Array) -> None:
+    """F of (24): xi > 0 from the cell left of a face and xi < 0 from the one right of it; h, u, m are ghosted."""
+    for i in range(F1.size):
+        p1, p2 = ahead(h[i], u[i], beta, m1[i], m2[i])
+        n1, n2 = ahead(h[i + 1], -u[i + 1], beta, m1[i + 1], m2[i + 1])
+        F1[i] = p1 - n1
+        F2[i] = p2 + n2
+
+
+@kernel
+def faces_of_states(
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, m: Array, F1: Array, F2: Array
+) -> None:
+    """The same for faces with states of their own; the rows of `m` are the moments of the left and right states."""
+    for i in range(F1.size):
+        p1, p2 = ahead(h_left[i], u_left[i], beta, m[0, i], m[1, i])
+        n1, n2 = ahead(h_right[i], -u_right[i], beta, m[2, i], m[3, i])
+        F1[i] = p1 - n1
+        F2[i] = p2 + n2

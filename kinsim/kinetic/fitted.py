@@ -19,13 +19,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..balance.interface import Faces
-from ..balance.sides import both_sides
+from ..balance.sides import both_sides, faces_of_cells, faces_of_states
 from ..balance.stages import Stages
 from ..balance.wing import WithoutDensity
 from ..kernel import kernel
 from ..scene import Scene
 
 Array = NDArray[np.float64]
+
+TINY = float(np.finfo(float).tiny)
+"""Keeps a division by c defined on dry ground, where its weight is zero."""
 
 
 @cache
@@ -38,38 +41,51 @@ def gauss_jacobi(count: int) -> tuple[Array, Array]:
 
 
 @kernel
-def half_moments_fitted(h: float, u: float, beta: float, s: Array, W: Array) -> tuple[float, float, float, float]:
-    """Moments of xi M and xi^2 M over xi >= 0, then over xi < 0."""
-    if not h > 0.0:
-        return 0.0, 0.0, 0.0, 0.0
-    c = math.sqrt(2.0 * beta * h)
-    b = max(c - abs(u), 0.0) / c
-    m1, m2 = 0.0, 0.0
+def small_sides_fitted(h: Array, u: Array, beta: float, s: Array, W: Array, b: Array, m1: Array, m2: Array) -> None:
+    """S1 and S2 of many states, node by node; all arrays but s and W have one shape, and `b` is room."""
+    for i in range(h.size):
+        c = math.sqrt(2.0 * beta * max(h[i], 0.0))
+        b[i] = max(c - abs(u[i]), 0.0) / max(c, TINY)
+        m1[i] = 0.0
+        m2[i] = 0.0
     for j in range(s.size):
-        root = W[j] * math.sqrt(2.0 - b * s[j])
-        m1 += root
-        m2 += root * (1.0 - s[j])
-    scale = 2.0 / math.pi * h * c * b * b * math.sqrt(b)
-    return both_sides(h, u, beta, scale * m1, scale * c * b * m2)
+        node, weight, rest = s[j], W[j], 1.0 - s[j]
+        for i in range(h.size):
+            root = weight * math.sqrt(2.0 - b[i] * node)
+            m1[i] += root
+            m2[i] += root * rest
+    for i in range(h.size):
+        c = math.sqrt(2.0 * beta * max(h[i], 0.0))
+        scale = 2.0 / math.pi * max(h[i], 0.0) * c * b[i] * b[i] * math.sqrt(b[i])
+        m1[i] *= scale
+        m2[i] *= scale * c * b[i]
+
+
+@kernel
+def half_moments_of_cells(h: Array, u: Array, beta: float, s: Array, W: Array, m: Array, out: Array) -> None:
+    """Moments of xi M and xi^2 M over xi >= 0, then over xi < 0, into `out` of shape (4, h.size)."""
+    small_sides_fitted(h, u, beta, s, W, m[2], m[0], m[1])
+    for i in range(h.size):
+        out[0, i], out[1, i], out[2, i], out[3, i] = both_sides(h[i], u[i], beta, m[0, i], m[1, i])
+
+
+@kernel
+def flux_of_cells(h: Array, u: Array, beta: float, s: Array, W: Array, m: Array, F1: Array, F2: Array) -> None:
+    """F of (24) at the faces between ghosted cells, shape (nx + 1,); `m`, (4, nx + 2), is room."""
+    small_sides_fitted(h, u, beta, s, W, m[2], m[0], m[1])
+    faces_of_cells(h, u, beta, m[0], m[1], F1, F2)
 
 
 @kernel
 def flux_fitted(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, s: Array, W: Array, F1: Array, F2: Array
-) -> None:
-    """F of (24) for every face, shape (nx + 1,)."""
-    for i in range(F1.size):
-        p1, p2, _, _ = half_moments_fitted(h_left[i], u_left[i], beta, s, W)
-        _, _, n1, n2 = half_moments_fitted(h_right[i], u_right[i], beta, s, W)
-        F1[i] = p1 + n1
-        F2[i] = p2 + n2
-
-
-@kernel
-def half_moments_of_cells(h: Array, u: Array, beta: float, s: Array, W: Array, out: Array) -> None:
-    """The same moments of every cell, into `out` of shape (4, h.size)."""
-    for i in range(h.size):
-        out[0, i], out[1, i], out[2, i], out[3, i] = half_moments_fitted(h[i], u[i], beta, s, W)
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, s: Array, W: Array, m: Array,
+    F1: Array, F2: Array,
+) -> None:  # fmt: skip
+    """F of (24) for every face, shape (nx + 1,), from states of its own; `m`, (5, nx + 1) or more, is room."""
+    n = F1.size
+    small_sides_fitted(h_left, u_left, beta, s, W, m[4, :n], m[0, :n], m[1, :n])
+    small_sides_fitted(h_right, u_right, beta, s, W, m[4, :n], m[2, :n], m[3, :n])
+    faces_of_states(h_left, u_left, h_right, u_right, beta, m, F1, F2)
 
 
 class FittedMeasure(WithoutDensity):
@@ -85,7 +101,7 @@ class FittedMeasure(WithoutDensity):
     def half_moments(self, now: Stages) -> Array:
         """Moments over xi > 0 and xi < 0 of each ghosted cell, shape (4, nx + 2)."""
         out = np.empty((4, now.h.size))
-        half_moments_of_cells(now.h, now.u, self._beta, self._s, self._W, out)
+        half_moments_of_cells(now.h, now.u, self._beta, self._s, self._W, self._room, out)
         return out
 
     def measure(self, h: Array, u: Array) -> tuple[Array, Array]:
@@ -96,5 +112,9 @@ class FittedMeasure(WithoutDensity):
         masses = 2.0 / np.pi * h[:, None] * b**1.5 * self._W * np.sqrt(2.0 - b * self._s) / (1.0 - self._s)
         return -np.sign(np.where(u == 0, -1.0, u))[:, None] * nodes, masses
 
+    def _flux_of_cells(self, h: Array, u: Array, F1: Array, F2: Array) -> None:
+        flux_of_cells(h, u, self._beta, self._s, self._W, self._room, F1, F2)
+
     def _flux(self, at: Faces, F1: Array, F2: Array) -> None:
-        flux_fitted(at.h_left, at.u_left, at.h_right, at.u_right, self._beta, self._s, self._W, F1, F2)
+        nodes = (self._s, self._W)
+        flux_fitted(at.h_left, at.u_left, at.h_right, at.u_right, self._beta, *nodes, self._room, F1, F2)

@@ -17,28 +17,38 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..balance.sides import both_sides
-from ..kernel import kernel
+from ..arc import arc
+from ..balance.sides import both_sides, faces_of_cells, faces_of_states
+from ..kernel import kernel, kernel_relaxed
 
 Array = NDArray[np.float64]
 
+TINY = float(np.finfo(float).tiny)
+"""Keeps a division by c defined on dry ground, where its weight is zero."""
 
-@kernel
+
+@kernel_relaxed("contract")
 def small_side(h: float, speed: float, beta: float) -> tuple[float, float]:
     """First and second moment over xi > 0 of M(h, xi + speed), speed >= 0; both are at least 0."""
-    c = math.sqrt(2.0 * beta * h)
-    if not speed < c:
-        return 0.0, 0.0
-    a = speed / c
+    c = math.sqrt(2.0 * beta * max(h, 0.0))
+    a = min(speed / max(c, TINY), 1.0)
     r = math.sqrt((1.0 - a) * (1.0 + a))
-    angle = math.acos(a)
+    near, far = arc(a)
+    angle = 2.0 * near if far else 0.5 * math.pi - near
     p0 = 0.5 * (angle - a * r)
-    p1 = r * r * r / 3.0
+    p1 = r * r * r * (1.0 / 3.0)
     p2 = 0.125 * (angle + a * r * (1.0 - 2.0 * a * a))
-    weight = 2.0 * h / math.pi
+    weight = 2.0 / math.pi * max(h, 0.0)
     m1 = weight * (c * p1 - speed * p0)
-    m2 = weight * (speed * speed * p0 - 2.0 * speed * c * p1 + c * c * p2)
+    m2 = weight * (speed * (speed * p0 - 2.0 * (c * p1)) + c * c * p2)
     return max(m1, 0.0), max(m2, 0.0)
+
+
+@kernel
+def small_sides(h: Array, u: Array, beta: float, m1: Array, m2: Array) -> None:
+    """The same of many states, all arrays of one shape."""
+    for i in range(h.size):
+        m1[i], m2[i] = small_side(h[i], abs(u[i]), beta)
 
 
 @kernel
@@ -58,12 +68,18 @@ def half_moments_of_cells(h: Array, u: Array, beta: float, out: Array) -> None:
 
 
 @kernel
+def flux_of_cells(h: Array, u: Array, beta: float, m: Array, F1: Array, F2: Array) -> None:
+    """F = (I1 + I2, I3 + I4) of (24) at the faces between ghosted cells, shape (nx + 1,); `m`, (2, nx + 2), is room."""
+    small_sides(h, u, beta, m[0], m[1])
+    faces_of_cells(h, u, beta, m[0], m[1], F1, F2)
+
+
+@kernel
 def flux_closed(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, F1: Array, F2: Array
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, m: Array, F1: Array, F2: Array
 ) -> None:
-    """F = (I1 + I2, I3 + I4) of (24) for every face, shape (nx + 1,)."""
-    for i in range(F1.size):
-        p1, p2, _, _ = half_moments_closed(h_left[i], u_left[i], beta)
-        _, _, n1, n2 = half_moments_closed(h_right[i], u_right[i], beta)
-        F1[i] = p1 + n1
-        F2[i] = p2 + n2
+    """F of (24) for every face, shape (nx + 1,), from states of its own; `m`, (4, nx + 1) or more, is room."""
+    n = F1.size
+    small_sides(h_left, u_left, beta, m[0, :n], m[1, :n])
+    small_sides(h_right, u_right, beta, m[2, :n], m[3, :n])
+    faces_of_states(h_left, u_left, h_right, u_right, beta, m, F1, F2)

@@ -7,7 +7,7 @@ import numpy as np
 from ..balance.interface import Faces
 from ..balance.stages import Array, Stages
 from ..balance.wing import WithoutDensity
-from .half_moments import flux_closed, half_moments_of_cells
+from .half_moments import flux_closed, flux_of_cells, half_moments_of_cells
 
 
 class ClosedForm(WithoutDensity):
@@ -19,5 +19,8 @@ class ClosedForm(WithoutDensity):
         half_moments_of_cells(now.h, now.u, self._beta, out)
         return out
 
+    def _flux_of_cells(self, h: Array, u: Array, F1: Array, F2: Array) -> None:
+        flux_of_cells(h, u, self._beta, self._room, F1, F2)
+
     def _flux(self, at: Faces, F1: Array, F2: Array) -> None:
-        flux_closed(at.h_left, at.u_left, at.h_right, at.u_right, self._beta, F1, F2)
+        flux_closed(at.h_left, at.u_left, at.h_right, at.u_right, self._beta, self._room, F1, F2)

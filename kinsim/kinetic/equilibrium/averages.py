@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...arc import arc
 from ...kernel import kernel
 from ..velocity import Grid
 from .rows import Array, put
@@ -108,27 +109,10 @@ def average_side(h: float, u: float, beta: float, dxi: float, side: Array) -> No
 def antiderivative(t: float) -> float:
     """G(t) = t sqrt(1 - t^2) + arcsin t, clipped to [-1, 1]: G' = 2 sqrt(1 - t^2), G(1) = pi/2.
 
-    Without branches, so that loops over it vectorise: arcsin x = x + x^3 P(x^2) for x <= 1/2, and above by
-    arcsin x = pi/2 - 2 arcsin sqrt((1 - x)/2). P interpolates at Chebyshev nodes, relative error 5e-18.
+    Without branches, so that loops over it vectorise.
     """
     x = min(abs(t), 1.0)
-    far = x > 0.5
-    z = 0.5 * (1.0 - x) if far else x * x
-    s = math.sqrt(z) if far else x
-    p = 0.028757851367421566
-    p = p * z - 0.014851887071247204
-    p = p * z + 0.01740087944269402
-    p = p * z + 0.005457506718640358
-    p = p * z + 0.01032281435018578
-    p = p * z + 0.011479177415184906
-    p = p * z + 0.013971212973552933
-    p = p * z + 0.017352392720869973
-    p = p * z + 0.02237217294214989
-    p = p * z + 0.030381944138531247
-    p = p * z + 0.04464285714635543
-    p = p * z + 0.07499999999998433
-    p = p * z + 0.16666666666666669
-    near = s + s * z * p
+    near, far = arc(x)
     angle = 0.5 * math.pi - 2.0 * near if far else near
     return math.copysign(x * math.sqrt((1.0 - x) * (1.0 + x)) + angle, t)
 

@@ -1,0 +1,98 @@
+"""No density: closed form and fitted nodes, the schemes compared, and what PyClaw takes for the same dam."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import plain
+from cases import Call, Case, Step, stored
+from dam_pyclaw import pyclaw_step
+from grid import ratio
+from native import Native, library
+from rows import Row, least, most, skipped
+from timing import interleave, same
+
+from kinsim import Fitted, Fixed, Kinetic, Macroscopic, Uniform, simulate
+from kinsim.method import SchemeNumber
+
+CELLS = 10_000
+
+
+def rows(quick: bool) -> Iterator[Row]:
+    """All rows of this file."""
+    yield from at_size(quick)
+    yield from schemes_on_grid(quick)
+    yield from overhead(quick)
+
+
+def at_size(quick: bool) -> Iterator[Row]:
+    """The rows at 1e4 cells."""
+    case = Case.dam(CELLS)
+    calls = {f"scheme {scheme}": Step(case, Macroscopic(scheme)) for scheme in (1, 3, 4)}
+    calls |= {f"fitted {count}": Step(case, Kinetic(1, Fitted(count))) for count in (6, 8)}
+    closed = calls["scheme 1"].result()
+    same("NumPy, closed form", closed, plain.closed(case))
+    for count in (6, 8):
+        same(f"fitted {count}", calls[f"fitted {count}"].result(), closed, within=1e-11)
+    others: dict[str, Call] = {"NumPy": lambda: plain.closed(case)}
+    if library():
+        others["C"] = native = Native(case)
+        same("C, closed form", closed, native.result())
+    pyclaw = pyclaw_step(case)
+    if pyclaw:
+        others["PyClaw"] = pyclaw
+    times = interleave({**calls, **others}, rounds=7 if quick else 21)
+    of = {name: time.words(CELLS * 1e-9, "ns per cell") for name, time in times.items()}
+    one = times["scheme 1"]
+    if library():
+        yield ratio("closed form, scheme 1 / C, 1e4 cells", one, times["C"], 1.3, f"{of['scheme 1']}; C {of['C']}")
+    else:
+        yield skipped("closed form, scheme 1 / C", "no C compiler")
+    yield least("formulas as printed in NumPy / closed form", times["NumPy"].median / one.median, 20.0, of["NumPy"])
+    yield ratio("Fitted 6 / closed form", times["fitted 6"], one, 1.7, of["fitted 6"])
+    yield ratio("Fitted 8 / closed form", times["fitted 8"], one, 2.0, of["fitted 8"])
+    yield ratio("scheme 3 / scheme 1, closed form", times["scheme 3"], one, 3.2, of["scheme 3"])
+    yield ratio("scheme 4 / scheme 1, closed form", times["scheme 4"], one, None, of["scheme 4"])
+    for name, of_ours, low in (("closed form", one, 4.0), ("Fitted 6", times["fitted 6"], 3.0)):
+        if pyclaw:
+            quotient = times["PyClaw"].median / of_ours.median
+            yield least(f"PyClaw order 1 / {name}, 1e4 cells", quotient, low, of["PyClaw"])
+        else:
+            yield skipped(
+                f"PyClaw order 1 / {name}", "clawpack is not installed (pip install clawpack, with a Fortran compiler)"
+            )
+
+
+def schemes_on_grid(quick: bool) -> Iterator[Row]:
+    """Scheme 3 and 4 against 1, f stored."""
+    case, n = Case.dam(1000), 128
+    numbers: tuple[SchemeNumber, ...] = (1, 3, 4)
+    calls = {f"scheme {scheme}": stored(case, n, scheme) for scheme in numbers}
+    for scheme in numbers:
+        same(
+            f"scheme {scheme}, f stored",
+            calls[f"scheme {scheme}"].result(),
+            Step(case, case.on_grid(n, scheme)).result(),
+        )
+    times = interleave(calls, rounds=5 if quick else 15)
+    for scheme, high in ((3, 3.2), (4, None)):
+        ours = times[f"scheme {scheme}"]
+        detail = ours.words(case.h.size * n * 1e-9, "ns")
+        yield ratio(f"scheme {scheme} / scheme 1, carried f, 1000x128", ours, times["scheme 1"], high, detail)
+
+
+def overhead(quick: bool) -> Iterator[Row]:
+    """A whole step of `simulate` with 50 cells, in microseconds."""
+    case = Case.dam(50)
+    on_grid = Kinetic(1, Uniform(32, case.bound), "sampled")
+    methods: dict[str, Kinetic | Macroscopic] = {
+        "closed form, scheme 1": Macroscopic(1),
+        "closed form, scheme 4": Macroscopic(4),
+        "Fitted 6, scheme 1": Kinetic(1, Fitted(6)),
+        "32 nodes, scheme 1": on_grid,
+    }
+    clock = Fixed(1e-6, 500 if quick else 2000)
+    for name, method in methods.items():
+        walls = sorted(simulate(case.scene, method, clock, 10**9).wall_time / clock.steps for _ in range(5))
+        spread = " / ".join(f"{1e6 * wall:.3g}" for wall in (walls[0], walls[2], walls[-1])) + " us"
+        yield most(f"a whole step with 50 cells, microseconds: {name}", 1e6 * walls[2], 40.0, spread)

@@ -1,0 +1,64 @@
+"""Interleaved timing: every contender takes its turn in each round, so that what disturbs one disturbs all."""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from cases import Array, Call
+
+
+@dataclass(frozen=True)
+class Times:
+    """Seconds per call, sorted."""
+
+    all: tuple[float, ...]
+
+    @property
+    def median(self) -> float:
+        """The one in the middle."""
+        return statistics.median(self.all)
+
+    def words(self, per: float = 1.0, unit: str = "s") -> str:
+        """Least, median and greatest, divided by `per`."""
+        return " / ".join(f"{one / per:.3g}" for one in (self.all[0], self.median, self.all[-1])) + f" {unit}"
+
+
+def interleave(calls: Mapping[str, Call], rounds: int = 9, least: float = 2e-3) -> dict[str, Times]:
+    """Time all calls in turn, `rounds` times; short ones are repeated within a turn until it takes `least` seconds."""
+    repeats = {}
+    for name, call in calls.items():
+        call()
+        once = _once(call, 1)
+        repeats[name] = max(1, math.ceil(least / max(once, 1e-9)))
+    found: dict[str, list[float]] = {name: [] for name in calls}
+    for _ in range(rounds):
+        for name, call in calls.items():
+            found[name].append(_once(call, repeats[name]))
+    return {name: Times(tuple(sorted(times))) for name, times in found.items()}
+
+
+def _once(call: Call, repeats: int) -> float:
+    began = time.perf_counter()
+    for _ in range(repeats):
+        call()
+    return (time.perf_counter() - began) / repeats
+
+
+def same(what: str, ours: list[Array], theirs: list[Array], within: float = 1e-12) -> float:
+    """The largest difference in units of the largest entry; complains where two contenders do not agree."""
+    worst = 0.0
+    for a, b in zip(ours, theirs, strict=True):
+        worst = max(worst, float(np.max(np.abs(a - b))) / max(float(np.max(np.abs(b))), 1.0))
+    if not worst <= within:
+        raise AssertionError(f"{what}: the results differ by {worst:.1e}; timing them would mean nothing")
+    return worst
+
+
+def exponent(sizes: list[int], seconds: list[float]) -> float:
+    """The slope of the cost in a doubly logarithmic plot."""
+    return float(np.polyfit(np.log(sizes), np.log(seconds), 1)[0])
