@@ -113,3 +113,18 @@ def test_friction_never_reverses_and_never_accelerates(method: Macroscopic | Kin
     full = 0.01 * 1.0 * math.tan(1.2) * now.h1[moving]
     lost = (np.abs(now.qhat) - np.abs(now.q1))[moving]
     assert (lost <= full * (1 + 1e-12) + 4 * EPS).all()
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("film", [1e-12, 1e-6])
+def test_a_film_between_the_nodes_stays_finite(order: int, film: float) -> None:
+    """Sampled M of a film thinner than a velocity cell is zero at all nodes: no particle is seen, and none clips it."""
+    h = np.where(np.arange(30) // 10 == 1, 0.5, film)
+    scene = scene_with(h, np.full(30, 0.317), zeta=0.5, delta=0.3, boundary="wall")
+    method = Kinetic(4, Uniform(32, 3.0), "sampled", order=order)
+    q = 0.317 * h
+    for _ in range(20):
+        now = step(scene, method, h, q, 0.01)
+        h, q = now.h1, now.q1
+        assert np.isfinite(h).all()
+        assert np.isfinite(q).all()

@@ -50,9 +50,12 @@ def main(chapter: Chapter) -> None:
         if book.sliding is not None:
             chapter.claim(f"{name}: work of friction over -R |q| in time, cells that slide",
                           book.sliding, low=1 - 1e-9, high=1 + 1e-9)  # fmt: skip
-    chapter.table("Entropy at the end, each part over the entropy at the start; largest production of a cell in "
-                  "a step at held faces, over (dt G)^2 h/2", ("run", "gained", "produced where nothing is held", "... at held "
-                  "faces", "gravity", "friction", "outflow", "largest production", "... with friction"), rows)  # fmt: skip
+    heads = ("run", "gained", "produced where nothing is held", "... at held faces", "gravity", "friction", "outflow",
+             "largest production", "... with friction")  # fmt: skip
+    caption = (
+        "Entropy at the end, each part over the entropy at the start; largest production of a cell in a step at held"
+    )
+    chapter.table(f"{caption} faces, over (dt G)^2 h/2", heads, rows)
     chapter.figure(draw(found["silo on dry ground"]), "silo", "Where the entropy of a collapsing column goes.")
 
 

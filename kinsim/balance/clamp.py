@@ -29,6 +29,8 @@ def clip_velocity(low: Array, high: Array, h1: Array, qhat: Array) -> None:
             v = qhat[i] / h1[i]
             slowest = min(low[i + 1], min(low[i], low[i + 2]))
             quickest = max(high[i + 1], max(high[i], high[i + 2]))
+            if slowest > quickest:  # a film that falls between nodes: no particle is seen, and none came
+                continue
             if not v >= slowest:
                 qhat[i] = slowest * h1[i]
             elif v > quickest:
