@@ -133,7 +133,7 @@ def held(chapter: Chapter) -> tuple[Run, Run]:
     """A column that breaks and a pile that stands, with what is held."""
     both = [Dump("M", "equilibrium", 10**6), Dump("back", "held", 10**6)]
     method = Kinetic(4, Uniform(128), "matched")
-    collapse = simulate(column(80), method, Courant(0.5, 1.9), 20, dumps=both)
+    collapse = simulate(column(80), method, Courant(0.5, 3.2), 20, dumps=both)
     heap = np.maximum(0.6 - 0.9 * np.abs(np.arange(-19.5, 20) * 0.05) * np.tan(DELTA) / 0.4, 0.0)
     stands = Scene(Cells(-1, 1, 40), Profile(heap), friction=Coulomb(DELTA), boundary="wall", epsilon=0.4,
                    title="pile that stands")  # fmt: skip
@@ -153,7 +153,7 @@ def draw(collapse: Run, standing: Run) -> Figure:
     """Above (x, xi) with M in grey and the held part in colour, below one cell."""
     figure = Figure(figsize=(12, 8), layout="constrained")
     panels = figure.subplots(2, 2, height_ratios=(1.2, 1))
-    for column_, (one, cell, window) in enumerate(((standing, 12, None), (collapse, None, (-3, 3)))):
+    for column_, (one, cell, window) in enumerate(((standing, 12, None), (collapse, None, None))):
         M, back = one.dumps["M"][-1], one.dumps["back"][-1]
         x, xi = M["x"].to_numpy(), M["xi"].to_numpy()
         if cell is None:  # where most is held among the particles to the left

@@ -11,6 +11,7 @@ import numpy as np
 from ..balance.stages import Array
 from ..errors import InputError
 from ..run import Run
+from ..watch.dump import LONG_NAMES
 from .picture import save
 
 if TYPE_CHECKING:
@@ -27,7 +28,8 @@ CUTS = 3
 def plot_density(run: Run, path: str | Path, name: str = "f", places: Sequence[float] = ()) -> Path:
     """Draw the dump `name` of `run`: over (x, xi) at up to four times, and at the last one as cuts at `places`.
 
-    Beside each cut stands M of the state at that time, beside each picture its support u +- c.
+    Beside each cut stands M of the state at that time, beside each picture its support u +- c. What faces hold back is
+    cut out of M.
 
     Raises:
         InputError: There is no such dump, a place lies outside it, or the picture cannot be put there.
@@ -75,7 +77,8 @@ def _pictures(run: Run, dump: xarray.DataArray, rows: list[int], chosen: list[in
         axes.set_title(f"t = {float(dump['t'][row]):.3g}", fontsize="medium")
         axes.set_xlabel("x")
     all_axes[0].set_ylabel(r"particle velocity $\xi$")
-    figure.colorbar(image, ax=list(all_axes), label=r"$f(x, \xi)$; white: $u \pm c$", pad=0.01)
+    what = "held back" if _is_held(dump) else r"$f(x, \xi)$"
+    figure.colorbar(image, ax=list(all_axes), label=rf"{what}; white: $u \pm c$", pad=0.01)
 
 
 def _cuts(run: Run, dump: xarray.DataArray, chosen: list[int], figure: Any) -> None:
@@ -88,13 +91,21 @@ def _cuts(run: Run, dump: xarray.DataArray, chosen: list[int], figure: Any) -> N
         square = 2.0 * run.scene.beta * max(h[cell], 0.0) - (fine - u[cell]) ** 2
         M = np.sqrt(np.maximum(square, 0.0)) / (np.pi * run.scene.beta)
         moved = float(dump["offset"][-1, cell]) if "offset" in dump.coords else 0.0
-        axes.stairs(dump[-1, cell].to_numpy(), _edges(xi) + moved, color=_colour(number), linewidth=1.6, label="f")
+        f, edges = dump[-1, cell].to_numpy(), _edges(xi) + moved
+        if _is_held(dump):  # the outer shell of M: what is left of M goes on
+            here = np.sqrt(np.maximum(2.0 * run.scene.beta * max(h[cell], 0.0) - (xi - u[cell]) ** 2, 0.0))
+            here /= np.pi * run.scene.beta
+            axes.stairs(
+                here, edges, baseline=np.maximum(here - f, 0.0), fill=True, color=_colour(number), label="held back"
+            )
+        else:
+            axes.stairs(f, edges, color=_colour(number), linewidth=1.6, label="f")
         axes.plot(fine, M, color="black", linewidth=1.0, label=r"$M(h, \xi - u)$")
         axes.axvline(0.0, color="0.7", linewidth=0.8)
         axes.set_title(f"cut at x = {x[cell]:.3g}, t = {t:.3g}", fontsize="medium")
         axes.set_xlabel(r"particle velocity $\xi$ (all quantities dimensionless)")
         axes.legend(frameon=False)
-    all_axes[0].set_ylabel(r"$f(\xi)$")
+    all_axes[0].set_ylabel("density")
 
 
 def _state(run: Run, t: float, x: Array) -> tuple[Array, Array]:
@@ -109,6 +120,11 @@ def _telling(dump: xarray.DataArray) -> list[int]:
     mass = np.cumsum(np.maximum(dump[-1].to_numpy(), 0.0).sum(axis=1))
     shares = (np.arange(CUTS) + 0.5) / CUTS
     return sorted({int(cell) for cell in np.searchsorted(mass, shares * mass[-1])}) if mass[-1] > 0 else [0]
+
+
+def _is_held(dump: xarray.DataArray) -> bool:
+    """Whether it shows what faces hold back of M, rather than a density."""
+    return bool(dump.attrs["long_name"] == LONG_NAMES["held"])
 
 
 def _edges(xi: Array) -> Array:
