@@ -141,7 +141,7 @@ def expected(what: str, of: int) -> tuple[float, float]:
     """Bounds of the order in dx: see the head of this page."""
     if of == 1:
         return SMOOTH if what in STRAIGHT else ROUGH
-    return 0.5, 1.7
+    return 0.5, 2.1
 
 
 def smooth(chapter: Chapter, counts: list[int]) -> dict[str, list[float]]:

@@ -114,7 +114,7 @@ def standing(chapter: Chapter, count: int) -> Figure:
 
 def _panels(count: int) -> tuple[Figure, Any]:
     figure = Figure(figsize=(12, 3.8), layout="constrained")
-    return figure, figure.subplots(1, count, sharey=True)
+    return figure, figure.subplots(1, count, sharex=True, sharey=True)
 
 
 def _curves(axes: Any, one: Run, times: tuple[float, ...]) -> None:
