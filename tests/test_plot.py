@@ -8,6 +8,7 @@ from conftest import SCENES
 
 from kinsim import Dump, Fixed, InputError, Kinetic, Macroscopic, Uniform, simulate
 from kinsim.plot import draw, plot_run, telling_rows
+from kinsim.plot.density import draw_density
 
 METHODS = {"kinetic": Kinetic(3, Uniform(32)), "macroscopic": Macroscopic(3)}
 SIGNATURES = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}
@@ -111,3 +112,18 @@ def test_a_failure_leaves_the_old_picture(tmp_path, run, monkeypatch):
         plot_run(run, path)
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
+
+
+def test_what_faces_hold_back_is_cut_out_of_m():
+    """The filled shell lies between M less what is held, and M."""
+    dump = Dump("back", "held", every=10**6)
+    run = small_run(Kinetic(4, Uniform(32), "matched"), dumps=[dump])
+    back = run.dumps["back"]
+    cell = int(back[-1].to_numpy().sum(axis=1).argmax())
+    figure = draw_density(run, back, [float(back["x"][cell])])
+    cut = next(axes for axes in figure.axes if axes.get_title().startswith("cut"))
+    values, _, base = cut.patches[0].get_data()
+    held = back[-1, cell].to_numpy()
+    np.testing.assert_allclose((values - base)[base > 0], held[base > 0], atol=1e-15)
+    assert held.max() > 0
+    assert any("held back" in axes.get_ylabel() for axes in figure.axes)
