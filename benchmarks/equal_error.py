@@ -15,6 +15,7 @@ import json
 import math
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from functools import cache, partial
@@ -85,7 +86,9 @@ def pyclaw_here(count: int, limiter: str) -> tuple[list[float], float]:
 def pyclaw_run(python: str, limiter: str, count: int) -> Answer:
     """The same through another interpreter."""
     command = [python, str(Path(__file__).resolve()), "--answer", str(count), limiter]
-    h, seconds = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines()[-1])
+    with tempfile.TemporaryDirectory() as scratch:  # pyclaw leaves a log where it runs
+        said = subprocess.run(command, check=True, capture_output=True, text=True, cwd=scratch).stdout
+    h, seconds = json.loads(said.splitlines()[-1])
     return error(np.array(h)), seconds
 
 
