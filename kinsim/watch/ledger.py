@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..balance.stages import Array, Stages
-from ..kernel import kernel
+from ..balance.stages import LANES, Array, Stages, largest
+from ..kernel import kernel, kernel_relaxed
 from ..kinetic.equilibrium import Status
 from ..kinetic.equilibrium.status import FALLBACKS, MASS_ONLY, TWO_MOMENTS
 from ..kinetic.shift import shift_linear
@@ -164,16 +164,41 @@ def departure(density: Density, h: Array, q: Array, dx: float) -> dict[str, floa
     }
 
 
+@kernel_relaxed("reassoc", "nsz")
+def all_finite(h: Array, q: Array) -> bool:
+    """Whether no entry is infinite or NaN: such a number times 0 is not 0."""
+    total = 0.0
+    for i in range(np.uint64(h.size)):
+        total += 0.0 * h[i] + 0.0 * q[i]
+    return total == 0.0
+
+
+@kernel
+def extremes(h: Array, q: Array, beta: float) -> tuple[float, float, float, float, float]:
+    """The least h, the largest |u|, |u| + c, |q| and h of a finite state."""
+    low = np.full(LANES, np.inf)
+    deep, much, quick, far = np.zeros(LANES), np.zeros(LANES), np.zeros(LANES), np.zeros(LANES)
+    for begin in range(0, h.size, LANES):
+        first, last = np.uint64(begin), np.uint64(min(begin + LANES, h.size))
+        for i in range(first, last):
+            k = i - first
+            low[k] = min(low[k], h[i])
+            deep[k] = max(deep[k], h[i])
+            much[k] = max(much[k], abs(q[i]))
+        for i in range(first, last):
+            k = i - first
+            u = abs(q[i]) / h[i] if h[i] > 0.0 else 0.0
+            quick[k] = max(quick[k], u)
+            far[k] = max(far[k], u + np.sqrt(2.0 * beta * max(h[i], 0.0)))
+    return -largest(-low), largest(quick), largest(far), largest(much), largest(deep)
+
+
 @kernel
 def survey(h: Array, q: Array, beta: float) -> tuple[float, float, float, float, float, int]:
     """The entries of a `Survey` of the state (h, q), each of shape (nx,)."""
-    h_min, u_max, fastest, q_max, h_max = np.inf, 0.0, 0.0, 0.0, 0.0
-    for i in range(h.size):
-        if not (np.isfinite(h[i]) and np.isfinite(q[i])):
-            return h_min, u_max, fastest, q_max, h_max, i
-        h_min, h_max, q_max = min(h_min, h[i]), max(h_max, h[i]), max(q_max, abs(q[i]))
-        if h[i] > 0.0:
-            u = abs(q[i] / h[i])
-            u_max = max(u_max, u)
-            fastest = max(fastest, u + np.sqrt(2.0 * beta * h[i]))
+    if not all_finite(h, q):
+        for i in range(h.size):
+            if not (np.isfinite(h[i]) and np.isfinite(q[i])):
+                return np.inf, 0.0, 0.0, 0.0, 0.0, i
+    h_min, u_max, fastest, q_max, h_max = extremes(h, q, beta)
     return h_min, u_max, fastest, q_max, h_max, -1
