@@ -1,4 +1,4 @@
-"""Four ways to break the package on purpose, each as a function that does it for the rest of the process.
+"""Five ways to break the package on purpose, each as a function that does it for the rest of the process.
 
 All of them replace Python around the kernels, never a kernel: what is compiled and kept on disk stays sound.
 """
@@ -48,3 +48,13 @@ def dropped_ghosts() -> None:
 def coupled_by_cell() -> None:
     """The coupling by cell is sold as the one by face, which is conservative."""
     schemes.Scheme3Face = schemes.Scheme3Cell  # type: ignore[misc]
+
+
+def halved_threshold() -> None:
+    """Cells are slow from half of the momentum on that friction can stop."""
+    sound = schemes.find_slow
+
+    def find_slow(q: Any, h1: Any, s: float, R: float, dt: float, slow: Any) -> None:
+        sound(q, h1, s, R, 0.5 * dt, slow)
+
+    schemes.find_slow = find_slow
