@@ -3,7 +3,9 @@
 Scheme 3 with the paper's cells and steps, and, on the kinetic side, a density on a velocity grid. What the text of
 section 4 promises is claimed with numbers:
 
-1. the Riemann problem meets its exact solution, better on finer cells (first order, fan and shock);
+1. the Riemann problem meets its exact solution, better on finer cells: L1(h) is 0.090, 0.053 and 0.030, within 5
+   percent, for dx = 0.05, 0.025 and 0.0125. Against exact values at the cell centres these are 0.0901, 0.0532 and
+   0.0301; against exact cell averages, which is what a cell holds, 0.0870, 0.0505 and 0.0298;
 2. and 3. the silo spreads symmetrically and comes to rest, on a slope that friction can hold;
 4. on the incline it moves to the right and comes to rest;
 5. the parabola spreads symmetrically and comes to rest;
@@ -69,8 +71,9 @@ def main(chapter: Chapter) -> None:
 
 
 def judge_riemann(chapter: Chapter, who: str, one: Run) -> None:
-    """L1(h) at t = 5, and scheme 3 leaves no zigzag."""
-    chapter.claim(f"{who}: L1(h) to the exact solution at t = 5, dx = 0.05", error(one), low=0.085, high=0.095)
+    """L1(h) at t = 5, within 5 percent of 0.090, and scheme 3 leaves no zigzag."""
+    for what, found in (("exact cell averages", error(one)), ("exact values at cell centres", error_at_centres(one))):
+        chapter.claim(f"{who}: L1(h) to {what} at t = 5, dx = 0.05", found, low=0.0855, high=0.0945)
     zigzag = np.abs(one.h[-1, 1:-1] - 0.5 * (one.h[-1, 2:] + one.h[-1, :-2]))[np.abs(one.x[1:-1] - 0.8) < 0.8].max()
     chapter.claim(f"{who}: largest h less mean of its neighbours on the plateau", zigzag, high=1e-3)
 
@@ -123,19 +126,31 @@ def _rest(one: Run) -> float:
 
 
 def finer_riemann(chapter: Chapter) -> None:
-    """Finer cells with the paper's dt, closed form."""
+    """Finer cells with the paper's dt, closed form, against exact cell averages and against values at cell centres.
+
+    They differ by what the cell of the shock counts: a cell's height is an average, to which the exact average in that
+    cell is nearer than the exact value at its centre.
+    """
     scene, _, _ = load_scene("riemann")
-    errors = []
     for count, expected in ((480, 0.053), (960, 0.030)):
         one = simulate(replace(scene, cells=replace(scene.cells, count=count)), Macroscopic(3), Fixed(1e-3, 5000), 5000)
-        errors.append(error(one))
-        chapter.claim(f"riemann, closed form: L1(h) at t = 5, dx = {12 / count:g}", errors[-1], low=0.95 * expected,
-                      high=1.05 * expected)  # fmt: skip
+        for what, found in (
+            ("exact cell averages", error(one)),
+            ("exact values at cell centres", error_at_centres(one)),
+        ):
+            chapter.claim(f"riemann, closed form: L1(h) to {what} at t = 5, dx = {12 / count:g}", found,
+                          low=0.95 * expected, high=1.05 * expected)  # fmt: skip
 
 
 def error(one: Run) -> float:
     """L1(h) to the exact cell averages at the end."""
     exact, _ = Riemann(1.0, 0.0, 0.5, 0.0, one.scene.beta).averages(one.scene.cells, float(one.t[-1]))
+    return float(np.abs(one.h[-1] - exact).sum() * one.scene.cells.dx)
+
+
+def error_at_centres(one: Run) -> float:
+    """L1(h) to the exact values at the cell centres at the end."""
+    exact, _ = Riemann(1.0, 0.0, 0.5, 0.0, one.scene.beta)(one.x, float(one.t[-1]))
     return float(np.abs(one.h[-1] - exact).sum() * one.scene.cells.dx)
 
 
