@@ -85,7 +85,10 @@ def page(records: Sequence[dict[str, Any]], out: Path) -> str:
             figure | {"data": base64.b64encode((out / figure["file"]).read_bytes()).decode()}
             for figure in record["figures"]
         ]
-        shown.append(record | {"title": title, "prose": MarkdownIt().render(prose), "pictures": pictures})
+        shown.append(
+            record
+            | {"title": title, "prose": MarkdownIt("commonmark", {"html": False}).render(prose), "pictures": pictures}
+        )
     template = Environment(autoescape=True).from_string(TEMPLATE.read_text(encoding="utf-8"))
     made = time.strftime("%Y-%m-%d")
     return template.render(records=shown, holds=holds(records), version=__version__, made=made)
