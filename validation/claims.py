@@ -70,6 +70,8 @@ class Chapter:
         """`measured` lies in [low, high]."""
         if math.isinf(low) and math.isinf(high):
             raise ValueError(f"{sentence}: a claim without a bound cannot fail; give it one")
+        if sentence.startswith("..."):
+            raise ValueError(f"{sentence}: a sentence is read alone, too; write it out")
         self.claims.append(Claim(sentence, float(measured), float(low), float(high)))
 
     def figure(self, figure: Figure, name: str, caption: str) -> None:

@@ -84,7 +84,7 @@ def where_dt_leads(chapter: Chapter, scheme: int, leads: Errors, ratios: list[fl
         rows.append([name, *errors, *falls(ratios, errors), lag[-1]])
         chapter.claim(f"scheme {scheme}, {name}: order in dt of L1(h)", order(ratios, errors), low=0.95, high=1.05)
         off = max(abs(error / foreseen - 1) for error, foreseen in zip(errors, lag, strict=True))
-        chapter.claim("... L1(h) over that of the lag dt (u(T) - u(0))/2, less 1", off, high=0.02)
+        chapter.claim(f"scheme {scheme}, {name}: L1(h) over that of the lag dt (u(T) - u(0))/2, less 1", off, high=0.02)
     heads = ["exact solution", *(f"dt/dx = {x:g}" for x in ratios), *["order"] * (len(ratios) - 1), "lag of the last"]
     chapter.table(f"L1(h) at dx = {dx:g}, scheme {scheme}, where dt leads", heads, rows)
 
@@ -120,7 +120,12 @@ def stopping(chapter: Chapter) -> None:
     chapter.claim("slide that stops, schemes 2 and 3: largest |u| after the arrest, all dt", max(
         row[2] for row in rows if row[0] > 1), high=0.0)  # fmt: skip
     chatter = [row[3] for row in rows if row[0] == 1]
-    chapter.claim("scheme 1: the same over dt (R + |sin zeta|)", max(chatter), low=0.1, high=1.0)
+    chapter.claim(
+        "slide that stops, scheme 1: |u| after the arrest over dt (R + |sin zeta|), largest of all dt",
+        max(chatter),
+        low=0.1,
+        high=1.0,
+    )
 
 
 if __name__ == "__main__":

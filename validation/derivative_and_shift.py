@@ -182,7 +182,7 @@ def stability(chapter: Chapter, n: int) -> dict[str, tuple[Array, Array]]:
         chapter.claim(f"{name} repeated: growth per step over what von Neumann allows, at most",
                       (grown / foreseen).max(), high=1.0 + 1e-6)  # fmt: skip
         unstable = foreseen > 1.05
-        chapter.claim(f"{name} repeated: the same where it grows, at least",
+        chapter.claim(f"{name} repeated: growth per step over what von Neumann allows, at least, where it grows",
                       (grown / foreseen)[unstable].min(), low=0.97)  # fmt: skip
     return found
 
@@ -269,7 +269,9 @@ def moments(chapter: Chapter) -> dict[str, Array]:
             chapter.claim(f"{name}: second moment less what the algebra says, over h dxi^2", wrong, high=1e-11)
     coarse, fine = (np.abs(pushed("shift-pfc", n)[1:, 1] / THETAS[1:]).max() for n in (64, 256))
     chapter.claim("shift-pfc: momentum that the limiter takes, over J, 64 nodes", coarse, low=1e-6, high=0.02)
-    chapter.claim("shift-pfc: the same with 256 nodes, over that with 64", fine / coarse, high=0.5)
+    chapter.claim(
+        "shift-pfc: momentum that the limiter takes with 256 nodes, over that with 64", fine / coarse, high=0.5
+    )
     chapter.claim("shift-pfc: second moment over h dxi^2 is below a fifth of the linear remap's largest, 1/4",
                   np.abs(found["shift-pfc"][:, 2]).max(), high=0.25 / 5)  # fmt: skip
     picked = [k for k in range(len(THETAS)) if k % 10 == 5]

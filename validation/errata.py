@@ -181,7 +181,7 @@ def whole_flux(chapter: Chapter) -> None:
     corrected = crosscheck(mended, beta=BETA)
     chapter.claim("crosscheck: regimes in which the printed flux fails", sum(not r.passes for r in as_printed.regimes),
                   low=1)  # fmt: skip
-    chapter.claim("crosscheck: the same of the corrected flux", sum(not r.passes for r in corrected.regimes),
+    chapter.claim("crosscheck: regimes in which the corrected flux fails", sum(not r.passes for r in corrected.regimes),
                   low=0, high=0)  # fmt: skip
     for one, expected in (("printed", (0.105, 0.115)), ("corrected", (0.29 - 1e-12, 0.29 + 1e-12))):
         _, second = (printed.flux if one == "printed" else mended)(*(np.array([v]) for v in (1, 0.3, 1, 0.3)), 0.4)

@@ -63,7 +63,11 @@ def moments_of_shapes(chapter: Chapter) -> None:
             worst = max(worst, np.abs((np.array(three) - [h, h * u, h * u * u + 0.5 * BETA * h * h]) / scale).max())
         rows.append([name, *five, float(worst)])
         chapter.claim(f"{name}: (5), largest error of the three moments of chi by quadrature", off, high=1e-11)
-        chapter.claim(f"{name}: (3), the same of M at 30 random (h, u), in flux scales", worst, high=1e-11)
+        chapter.claim(
+            f"{name}: (3), largest error of the three moments of M at 30 random (h, u), in flux scales",
+            worst,
+            high=1e-11,
+        )
     chapter.table("Moments of chi, beta = 0.4, which (5) wants to be 1, 0, 0.2; largest error of (3)",
                   ("chi", "mass", "momentum", "second", "(3)"), rows)  # fmt: skip
 
@@ -129,8 +133,8 @@ def theorem_with_numbers(chapter: Chapter, count: int) -> None:
         size = min(size, float(np.abs(residuals).max()))
     chapter.claim(f"(7): largest moment of Q on a solution with friction, {count} places, differences of step 1e-3",
                   worst, high=1e-9)  # fmt: skip
-    chapter.claim("the same states with other slopes: moments of Q less residuals of (1)", apart, high=1e-12)
-    chapter.claim("... whose least size (over both) is", size, low=1e-3)
+    chapter.claim("(7) with other slopes, which solve nothing: moments of Q less residuals of (1)", apart, high=1e-12)
+    chapter.claim("(7) with other slopes: least residual of (1) among them", size, low=1e-3)
 
 
 FLOW = AcceleratedRiemann(Riemann(1.0, 0.5, 0.5, 0.5, BETA), 0.3, 0.2)

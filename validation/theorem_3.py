@@ -71,7 +71,9 @@ def main(chapter: Chapter) -> None:
     chapter.claim("scheme 1: least share of its height that a cell keeps below Courant number 1", shares[inside].min(),
                   low=-8 * EPS)  # fmt: skip
     chapter.claim(
-        "... beyond Courant number 1.01: largest (below 0: the bound is sharp)", shares[beyond].max(), high=-1e-3
+        "scheme 1: share of its height that a cell keeps beyond Courant number 1.01, largest (the bound is sharp)",
+        shares[beyond].max(),
+        high=-1e-3,
     )
     slow, numbers = counterexample(chapter)
     chapter.figure(draw(courants, shares, numbers, slow), "bound",
@@ -105,7 +107,11 @@ def counterexample(chapter: Chapter) -> tuple[Array, Array]:
         rows.append([name, float(now.h1[2]), int(now.slow[2])])
         if method == Macroscopic(3):
             chapter.claim("counterexample, scheme 3: least h", now.h1.min(), high=-1e-4)
-            chapter.claim("... less what quadrature of (25) gives", abs(now.h1[2] - foreseen), high=4 * EPS)
+            chapter.claim(
+                f"counterexample, {name}: least h less what quadrature of (25) gives",
+                abs(now.h1[2] - foreseen),
+                high=4 * EPS,
+            )
         if method == Macroscopic(1) or method == Macroscopic(3, "face"):
             chapter.claim(f"counterexample, {name}: least h", now.h1.min(), low=0.0)
     chapter.table("h of the film's last cell after one step, from 0.001", ("", "h", "slow"), rows)
