@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import base64
 import json
+import math
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,22 +17,31 @@ from .errors import InputError
 HELPERS = {"claims"}
 """Files in the folder that are no scripts."""
 
+ORDER = ("canary", "theorem", "errata", "figures", "rest", "mass", "zigzag", "", "scheme", "convergence")
+"""Beginnings of names in the order of the page: from theorems to figures to convergence; "" stands for all others."""
+
 TEMPLATE = Path(__file__).parent / "report.html"
 
 
 def find_scripts(only: Sequence[str] = (), folder: Path = Path("validation")) -> list[Path]:
-    """The scripts in `folder`, or those of them called `only`.
+    """The scripts in `folder`, or those of them called `only`, in the order of the page.
 
     Raises:
         InputError: There is no such folder, or no script of that name.
     """
     if not (folder / "claims.py").is_file():
         raise InputError(f"no validation scripts in {folder}/; run this in a checkout of kinsim")
-    scripts = {path.stem: path for path in sorted(folder.glob("*.py")) if path.stem not in HELPERS}
+    paths = sorted(folder.glob("*.py"), key=lambda path: (_place(path.stem), path.stem))
+    scripts = {path.stem: path for path in paths if path.stem not in HELPERS}
     for name in only:
         if name not in scripts:
             raise InputError(f"no validation script {name!r}; there are: {', '.join(scripts)}")
     return [path for name, path in scripts.items() if not only or name in only]
+
+
+def _place(name: str) -> int:
+    known = [number for number, beginning in enumerate(ORDER) if beginning and name.startswith(beginning)]
+    return known[0] if known else ORDER.index("")
 
 
 def validate(
@@ -59,7 +69,7 @@ def validate(
             told(script.stem, number / len(scripts))
         records.append(_run(script, out, full))
     (out / "index.html").write_text(page(records, out), encoding="utf-8")
-    (out / "claims.md").write_text(claims_table(records), encoding="utf-8")
+    (out / "claims.md").write_text(chapters_table(records) + "\n" + claims_table(records), encoding="utf-8")
     return records
 
 
@@ -69,7 +79,7 @@ def holds(records: Sequence[dict[str, Any]]) -> bool:
 
 
 def page(records: Sequence[dict[str, Any]], out: Path) -> str:
-    """One self-contained page: a table of all claims, then script by script prose, figures, tables and claims."""
+    """One self-contained page: a row per chapter, what fails, then script by script prose, claims, figures, tables."""
     try:
         from jinja2 import Environment
     except ImportError:
@@ -80,18 +90,57 @@ def page(records: Sequence[dict[str, Any]], out: Path) -> str:
 
     shown = []
     for record in records:
-        title, _, prose = record["story"].strip().partition("\n")
+        title, prose = _story(record)
+        failing = [claim for claim in record["claims"] if not claim["holds"]]
         pictures = [
             figure | {"data": base64.b64encode((out / figure["file"]).read_bytes()).decode()}
             for figure in record["figures"]
         ]
-        shown.append(
-            record
-            | {"title": title, "prose": MarkdownIt("commonmark", {"html": False}).render(prose), "pictures": pictures}
-        )
+        shown.append(record | {
+            "title": title, "prose": MarkdownIt("commonmark", {"html": False}).render(prose), "pictures": pictures,
+            "failing": failing, "holding": [claim for claim in record["claims"] if claim["holds"]],
+            "margin": worst_margin(record),
+        })  # fmt: skip
     template = Environment(autoescape=True).from_string(TEMPLATE.read_text(encoding="utf-8"))
     made = time.strftime("%Y-%m-%d")
     return template.render(records=shown, holds=holds(records), version=__version__, made=made)
+
+
+def _story(record: Mapping[str, Any]) -> tuple[str, str]:
+    title, _, prose = record["story"].strip().partition("\n")
+    return title, prose
+
+
+def margin(claim: Mapping[str, Any]) -> float:
+    """How far a claim is from failing: 1 at best, 0 at its bound, below 0 if it fails.
+
+    Between two bounds it is the distance to the nearer one over half of theirs; above or below one, the distance over
+    the larger of the two sizes. A claim of exactly one number has no margin to speak of: 1 if it holds.
+    """
+    low, high, measured = claim["low"], claim["high"], claim["measured"]
+    if not math.isfinite(measured):
+        return 1.0 if claim["holds"] else -math.inf
+    if math.isfinite(low) and math.isfinite(high) and low < high:
+        return float(min(measured - low, high - measured) / (0.5 * (high - low)))
+    bound, inside = (high, high - measured) if math.isfinite(high) else (low, measured - low)
+    size = max(abs(bound), abs(measured))
+    return float(inside / size) if inside and low < high else 1.0 if claim["holds"] else -1.0
+
+
+def worst_margin(record: Mapping[str, Any]) -> float:
+    """The least margin of a chapter's claims, 1 if it makes none."""
+    return min((margin(claim) for claim in record["claims"]), default=1.0)
+
+
+def chapters_table(records: Sequence[Mapping[str, Any]]) -> str:
+    """The chapters as a Markdown table: title, number of claims, how many fail, worst margin, script."""
+    lines = ["| chapter | claims | failing | worst margin | script |", "|---|---|---|---|---|"]
+    for record in records:
+        failing = sum(not claim["holds"] for claim in record["claims"])
+        broke = " **broke**" if record.get("error") else ""
+        cells = (_cell(_story(record)[0]), len(record["claims"]), f"{failing}{broke}", f"{worst_margin(record):.1%}")
+        lines.append(f"| {' | '.join(map(str, cells))} | `{record['name']}` |")
+    return "\n".join(lines) + "\n"
 
 
 def claims_table(records: Sequence[dict[str, Any]]) -> str:

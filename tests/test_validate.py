@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import math
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from typer.testing import CliRunner
 
 from kinsim.cli import app
-from kinsim.validate import find_scripts, holds, validate
+from kinsim.validate import find_scripts, holds, margin, validate
 
 CLAIMS = Path(__file__).parent.parent / "validation" / "claims.py"
 
@@ -56,7 +60,84 @@ def test_report_holds_all_there_is_to_read(checkout: Path) -> None:
         assert words in page
     assert "http" not in page
     assert "Every claim holds." in page
-    assert Path("out/claims.md").read_text().splitlines()[2] == "| one is \\| below two | 1 | <= 2 | `good` |"
+    written = Path("out/claims.md").read_text().splitlines()
+    assert written[2] == "| A small story & <more>. | 1 | 0 | 50.0% | `good` |"
+    assert written[-1] == "| one is \\| below two | 1 | <= 2 | `good` |"
+
+
+def test_the_page_opens_with_a_row_per_chapter_and_what_fails(checkout: Path) -> None:
+    """What fails comes first, what holds is folded; no chapter brings HTML of its own."""
+    for name, bound in (("convergence_x", 2.0), ("theorem_x", 0.5), ("canary", 2.0)):
+        (checkout / f"{name}.py").write_text(
+            SCRIPT.format(bound=bound).replace("With *prose*", "With <b>x</b> *prose*")
+        )
+    scripts = find_scripts()
+    assert [script.stem for script in scripts] == ["canary", "theorem_x", "good", "convergence_x"]
+    validate(scripts, Path("out"))
+    page = Path("out/index.html").read_text()
+    assert "<b>x</b>" not in page
+    top, chapters = page.split("<h2", 1)
+    assert top.index("What fails") < top.index("Chapters")
+    assert top.count("one is | below two") == 1
+    for name in ("canary", "theorem_x", "good", "convergence_x"):
+        assert f'href="#{name}"' in top
+        assert f'id="{name}"' in page
+    assert chapters.count("<details") == 3
+    assert chapters.count("Claims that fail") == 1
+
+
+def test_margins() -> None:
+    def of(measured: float, low: float = -math.inf, high: float = math.inf) -> float:
+        return margin({"measured": measured, "low": low, "high": high, "holds": low <= measured <= high})
+
+    assert of(1.0, 0.0, 2.0) == 1.0
+    assert of(1.9, 0.0, 2.0) == pytest.approx(0.1)
+    assert of(2.1, 0.0, 2.0) == pytest.approx(-0.1)
+    assert of(3.0, high=4.0) == 0.25
+    assert of(4.0, low=3.0) == 0.25
+    assert of(-2.0, high=-1.0) == 0.5
+    assert of(0.0, 0.0, 0.0) == of(0.0, high=0.0) == 1.0
+    assert of(1.0, 0.0, 0.0) == -1.0
+    assert of(math.nan, high=1.0) == -math.inf
+
+
+def test_a_sentence_that_says_nothing_alone_is_refused(checkout: Path) -> None:
+    (checkout / "odd.py").write_text(SCRIPT.format(bound=2.0).replace("one is |", "... is |"))
+    (record,) = validate(find_scripts(["odd"]), Path("out"))
+    assert "write it out" in record["error"]
+
+
+def test_the_readme_is_checked_against_a_run(checkout: Path) -> None:
+    """Other numbers will do; other claims, bounds or chapters will not."""
+    for name in ("canary", "theorem_3", "figures", "mass_drift"):
+        shutil.copy(checkout / "good.py", checkout / f"{name}.py")
+    readme, out = Path("README.md"), Path("out")
+    readme.write_text("before\n<!-- claims -->\nold\n<!-- end of claims -->\nafter\n")
+    validate([checkout / "good.py"], out)
+    record = (out / "good.json").read_text()
+    for name in ("canary", "theorem_3", "figures", "mass_drift"):
+        (out / f"{name}.json").write_text(record.replace('"name": "good"', f'"name": "{name}"'))
+
+    def ci(*words: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, str(CLAIMS.parents[1] / ".ci" / "claims.py"), str(out), *words]
+        env = {**os.environ, "PYTHONPATH": str(CLAIMS.parents[1])}
+        return subprocess.run(command, capture_output=True, text=True, check=False, env=env)
+
+    assert ci("--check").returncode == 1
+    assert ci().returncode == 0
+    written = readme.read_text()
+    assert written.startswith("before\n")
+    assert written.endswith("after\n")
+    assert "| A small story & <more>. | 1 | 0 | 50.0% | `good` |" in written
+    assert ci("--check").returncode == 0
+    readme.write_text(written.replace("| 1 | <= 2 |", "| 1.1 | <= 2 |").replace("50.0%", "45.0%"))
+    assert ci("--check").returncode == 0
+    for old, new in (("<= 2", "<= 3"), ("below two", "below three"), ("| 1 | 0 | 50.0%", "| 2 | 0 | 50.0%")):
+        readme.write_text(written.replace(old, new))
+        done = ci("--check")
+        assert done.returncode == 1
+        assert "the claims have changed" in done.stderr
+        assert readme.read_text() == written.replace(old, new)
 
 
 def test_a_failing_claim_turns_the_report_red(checkout: Path) -> None:
