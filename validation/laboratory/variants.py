@@ -34,7 +34,7 @@ class Variant:
 
 def variants() -> Iterator[Variant]:
     """Every equilibrium at the default force, every other force, projection and velocity space at the defaults."""
-    default = Kinetic()
+    default = Kinetic(1)
     for name in EQUILIBRIA:
         yield Variant("equilibrium", name, lambda s, n, b, name=name: Kinetic(s, Uniform(n, b), name))
     for name in FORCES:
