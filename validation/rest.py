@@ -9,7 +9,8 @@ On a velocity grid rest hangs on the second moment: F~ balances g~ only if the d
 M matched in three moments rests like the closed form, cell averages leave a small momentum.
 
 (22) takes differences over two cells and is blind to zigzags. A zigzag far steeper than any friction holds rests for
-ever; and a pile that (22) finds inside the bound slides away if a zigzag makes the mean height at a cell too large.
+ever; and a pile that (22) finds inside the bound slides away, from a breath of 1e-12, if a zigzag makes the mean height
+at a cell too large.
 """
 
 from __future__ import annotations
@@ -209,13 +210,18 @@ def blind(chapter: Chapter) -> dict[str, Run]:
         scene = ground(0.0, 0.3)
         x = scene.x
         h = 0.3 + 0.95 * scene.resistance / scene.beta * np.minimum(x, x[::-1]) + size * (-1.0) ** np.arange(40)
-        runs[name] = simulate(replace(scene, heap=Profile(h)), Macroscopic(2), Fixed(DT, 4000), 40)
+        breath = 1e-12 * np.random.default_rng(1).uniform(-1, 1, 40)  # rounding alone may or may not wake the pile
+        runs[name] = simulate(replace(scene, heap=Profile(h, breath)), Macroscopic(2), Fixed(DT, 4000), 40)
         slope = scene.beta * np.abs(h[2:] - h[:-2]).max() / (0.1 * scene.resistance)
         chapter.claim(f"pile filled to 95 percent, {name}: slope over what friction holds, (22)", slope, high=0.951)
-    largest = {name: float(np.abs(one.u).max()) for name, one in runs.items()}
-    chapter.claim("pile filled to 95 percent, smooth: largest |u| in 4000 steps", largest["smooth"], high=1e-14)
+    largest = {name: float(np.abs(one.u[-1]).max()) for name, one in runs.items()}
     chapter.claim(
-        "pile filled to 95 percent, with a zigzag of 0.02: largest |u|, so that it slides",
+        "pile filled to 95 percent, smooth: largest |u| 4000 steps after a breath of 1e-12",
+        largest["smooth"],
+        high=1e-14,
+    )
+    chapter.claim(
+        "pile filled to 95 percent, with a zigzag of 0.02: largest |u| 4000 steps after a breath of 1e-12",
         largest["with a zigzag of 0.02"],
         low=1e-4,
     )
