@@ -12,9 +12,8 @@ from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face
 from .balance.stages import Array, Stages, reach
 from .balance.update import update
 from .balance.wing import Wing
-from .kinetic.equilibrium import EQUILIBRIA
+from .kinetic.choice import make_density
 from .kinetic.fitted import FittedMeasure
-from .kinetic.force import FORCES
 from .kinetic.project import PROJECTIONS, FluxDifference, Projection
 from .kinetic.velocity import Fitted
 from .kinetic.wing import Density
@@ -58,9 +57,7 @@ class Stepper:
             self.wing = FittedMeasure(scene, method.velocity.count)
         else:
             self.projection = PROJECTIONS[method.projection]
-            self.wing = self.density = Density(
-                scene, method.velocity, EQUILIBRIA[method.equilibrium], FORCES[method.force], self.scheme
-            )
+            self.wing = self.density = make_density(scene, method, self.scheme)
 
     def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
         """Stand at U^n = (h, q), each of shape (nx,); returns the fastest occupied velocity.
@@ -91,6 +88,8 @@ class Stepper:
         """The outermost velocity of the states at U^n, face states included."""
         if self.density is None and not self.scheme.uses_balanced:
             return self._fastest
+        if self.density is not None and not self.scheme.sloped:
+            return self.density.reach
         return reach(self.now, self._beta, self.scheme.uses_balanced)
 
     def rest(self, h_max: float) -> float:

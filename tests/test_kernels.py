@@ -108,13 +108,13 @@ def test_rooms_nobody_chose_are_never_compiled() -> None:
         "import kinsim, importlib\n"
         "scene = kinsim.load_scene('riemann')[0]\n"
         "kinsim.simulate(scene, kinsim.Kinetic(scheme=1, velocity=kinsim.Uniform(8)), kinsim.Fixed(1e-3, 2))\n"
-        "from kinsim.kinetic import derivative, fitted, shift, transport\n"
+        "from kinsim.kinetic import carry, derivative, fitted, occupied, shift, transport\n"
         "from kinsim.kinetic.equilibrium import averages, entropic, matched\n"
         "from kinsim.balance import impulse, interface\n"
-        "used = [averages.cell_average, transport.transport, impulse.sliding]\n"
+        "used = [averages.cell_average, occupied.sum_cells, carry.carry, impulse.sliding]\n"
         "unused = [averages.sampled, matched.matched, entropic.entropic, fitted.flux_fitted, shift.shift_pfc,\n"
         "          shift.shift_linear, derivative.derivative_upwind, derivative.derivative_centred,\n"
-        "          interface.balanced, impulse.stopping]\n"
+        "          interface.balanced, impulse.stopping, transport.transport]\n"
         "print(all(k.signatures for k in used), any(k.signatures for k in unused))\n"
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

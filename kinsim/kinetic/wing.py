@@ -20,16 +20,15 @@ class Density:
 
     Attributes:
         grid: The velocity cells.
-        M: Equilibrium M(h, xi - u) at level n, ghosted, shape (nx + 2, n).
-        B: Density at balanced or held faces, shape (nx + 1, n), or empty where the scheme has none.
-        transported: f after transport, shape (nx, n).
-        f: f after the force, shape (nx, n).
         offset: How far the force moved the nodes of each row of f, shape (nx,); 0 where it moved the values.
         status: How the equilibrium fared in each row of M.
         face_status: The same for B.
+        reports: Whether the statuses can say anything: the equilibrium is solved for.
         lost: Mass that the force pushed out of the window in the last step, per dx.
         reach: The fastest particle of all states at level n; past the edge of the window, M is cut.
     """
+
+    reports = True
 
     def __init__(
         self, scene: Scene, velocity: Uniform | Window, equilibrium: Equilibrium, force: Force, scheme: Scheme
@@ -56,11 +55,31 @@ class Density:
         self.grid = grid
         self.xi = grid.xi
         self._w1, self._w2 = self._equilibrium.weights(grid)
-        self.M = np.zeros((nx + 2, n))
-        self.B = np.zeros((nx + 1 if self._scheme.has_faces else 0, n))
-        self._minus = np.zeros((nx + 2, n)) if self._scheme.sloped else self.M
-        self.transported = np.zeros((nx, n))
-        self.f = np.zeros((nx, n)) if self._forced else self.transported
+        self._M = np.zeros((nx + 2, n))
+        self._B = np.zeros((nx + 1 if self._scheme.has_faces else 0, n))
+        self._minus = np.zeros((nx + 2, n)) if self._scheme.sloped else self._M
+        self._transported = np.zeros((nx, n))
+        self._f = np.zeros((nx, n)) if self._forced else self._transported
+
+    @property
+    def M(self) -> Array:
+        """Equilibrium M(h, xi - u) at level n, ghosted, shape (nx + 2, n)."""
+        return self._M
+
+    @property
+    def B(self) -> Array:
+        """Density at balanced or held faces, shape (nx + 1, n), or empty where the scheme has none."""
+        return self._B
+
+    @property
+    def transported(self) -> Array:
+        """f after transport, shape (nx, n)."""
+        return self._transported
+
+    @property
+    def f(self) -> Array:
+        """f after the force, shape (nx, n)."""
+        return self._f
 
     def _widen(self, grid: Grid) -> None:
         M, B, pad = self.M, self.B, (grid.count - self.grid.count) // 2
@@ -160,6 +179,10 @@ class Density:
         np.subtract(of_cells[:, half:], self.B[1:, half:], out=out[:, half:], where=at[1:, None])
         np.subtract(of_cells[:, :half], self.B[:-1, :half], out=out[:, :half], where=at[:-1, None])
         return out
+
+    def least(self) -> float:
+        """The least entry of f after the force."""
+        return float(self.f.min())
 
     def average(self, M: Array) -> None:
         """Mean of what a second stage made of f and of M, the density from which the first one started."""

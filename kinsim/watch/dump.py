@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
@@ -29,6 +30,13 @@ LONG_NAMES = {
     "held": "density that static friction holds back at the walls of its cell",
     "transport": "density after transport",
     "force": "density after the force",
+}
+
+SHOWN: dict[Stage, Callable[[Density, Stages], Array]] = {
+    "equilibrium": lambda density, now: density.M[1:-1],
+    "held": lambda density, now: density.held(now),
+    "transport": lambda density, now: density.transported,
+    "force": lambda density, now: density.f,
 }
 
 
@@ -80,11 +88,7 @@ class Recorder:
         self._last = step
         stage, density = self.dump.stage, self._density
         self._times.append(before if stage in ("equilibrium", "held") else after)
-        if stage == "held":
-            whole = density.held(now)
-        else:
-            whole = {"equilibrium": density.M[1:-1], "transport": density.transported, "force": density.f}[stage]
-        self._rows.append(whole[self._cells].copy())
+        self._rows.append(SHOWN[stage](density, now)[self._cells].copy())
         self._offsets.append(density.offset[self._cells] if stage == "force" else np.zeros(self._x.size))
 
     def result(self) -> xarray.DataArray:

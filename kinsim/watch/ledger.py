@@ -86,10 +86,11 @@ class Ledger:
         for at, part in enumerate(books):
             self._booked[at] += part
         if density is not None:
-            self._f_min = min(self._f_min, float(density.f.min()))
+            self._f_min = min(self._f_min, density.least())
             self.least_density = min(self.least_density, self._f_min)
-            self._note_status(density.status, slice(1, -1))
-            self._note_status(density.face_status, slice(None))
+            if density.reports:
+                self._note_status(density.status, slice(1, -1))
+                self._note_status(density.face_status, slice(None))
 
     def save(self, h: Array, q: Array, started: bool = True, f_is_of_state: bool = True) -> None:
         """Make a row of what was noted since the row before; f may belong to a step that was given up."""

@@ -72,6 +72,21 @@ def sample_side(h: float, u: float, beta: float, dxi: float, side: Array) -> Non
 
 
 @kernel
+def sample_inside(h: float, u: float, beta: float, dxi: float, side: Array) -> tuple[int, int]:
+    """The same at nodes that cover the support; returns the first and one past the last, and leaves out the others."""
+    square = 2.0 * beta * max(h, 0.0)
+    scale = 1.0 / (math.pi * beta)
+    c, half = math.sqrt(square), side.size
+    begin = int(min(max((u - c) / dxi - 1.0, 0.0), half))
+    end = math.ceil(min(max((u + c) / dxi + 1.0, 0.0), half)) if c > 0.0 else begin
+    inside = side[begin:end]
+    for k in range(inside.size):
+        w = (begin + k + 0.5) * dxi - u
+        inside[k] = scale * math.sqrt(max(square - w * w, 0.0))
+    return begin, max(begin, end)
+
+
+@kernel
 def cell_average(
     h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, dxi: float, rows: Array
 ) -> None:
@@ -88,12 +103,18 @@ def cell_average(
 @kernel
 def average_side(h: float, u: float, beta: float, dxi: float, side: Array) -> None:
     """Averages over the cells xi > 0: h/(pi dxi) [G(t)] between the edges, t = (xi - u)/c clipped to [-1, 1]."""
+    begin, end = average_inside(h, u, beta, dxi, side)
+    side[:begin] = 0.0
+    side[end:] = 0.0
+
+
+@kernel
+def average_inside(h: float, u: float, beta: float, dxi: float, side: Array) -> tuple[int, int]:
+    """The same from the first cell that M reaches to the last; returns these, last + 1, and leaves out the others."""
     half = side.size
     c = math.sqrt(2.0 * beta * max(h, 0.0))
     begin = int(min(max((u - c) / dxi, 0.0), half))
     end = math.ceil(min(max((u + c) / dxi, 0.0), half)) if c > 0.0 else begin
-    side[:begin] = 0.0
-    side[end:] = 0.0
     inside = side[begin:end]
     for k in range(inside.size):
         inside[k] = antiderivative(((begin + k + 1) * dxi - u) / c)
@@ -103,6 +124,7 @@ def average_side(h: float, u: float, beta: float, dxi: float, side: Array) -> No
         above = inside[k]
         inside[k] = max(scale * (above - below), 0.0)
         below = above
+    return begin, max(begin, end)
 
 
 @kernel

@@ -1,0 +1,148 @@
+"""Half-range sums of M, cell by cell, over the nodes that it occupies: M is made on one side of xi = 0 and forgotten.
+
+The sums run outward from xi = 0 as those of `transport.half_sums` do, and what they leave out is zero: they are bitwise
+those of stored rows, and so are the outermost nodes.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel import kernel
+from .equilibrium.averages import average_inside, sample_inside
+from .shift import split_shift
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@kernel
+def fill_occupied(h: float, u: float, beta: float, dxi: float, averaged: bool, side: Array) -> tuple[int, int]:
+    """M(h, xi - u) at the nodes xi > 0 from the first at which it is not zero to the last; returns these, last + 1."""
+    begin, end = average_inside(h, u, beta, dxi, side) if averaged else sample_inside(h, u, beta, dxi, side)
+    while end > begin and side[end - 1] == 0.0:
+        end -= 1
+    while begin < end and side[begin] == 0.0:
+        begin += 1
+    return begin, end
+
+
+@kernel
+def sum_side(side: Array, begin: int, end: int, w1: Array, w2: Array) -> tuple[float, float]:
+    """First and second moment of what stands from `begin` to below `end` of one side."""
+    m1, m2 = 0.0, 0.0
+    for k in range(begin, end):
+        m1 += w1[k] * side[k]
+        m2 += w2[k] * side[k]
+    return m1, m2
+
+
+@kernel
+def sum_cells(
+    h: Array, u: Array, beta: float, dxi: float, averaged: bool, w1: Array, w2: Array, P: Array, N: Array,
+    sums: Array, low: Array, high: Array,
+) -> float:  # fmt: skip
+    """Half-range sums of each ghosted cell, shape (4, nx + 2), and its outermost occupied nodes.
+
+    P and N are room for the sides. Returns the outermost of all nodes, 0 if all is dry.
+    """
+    top = 0
+    for i in range(h.size):
+        first, last = fill_occupied(h[i], u[i], beta, dxi, averaged, P)
+        begin, end = fill_occupied(h[i], -u[i], beta, dxi, averaged, N)
+        p1, p2, n1, n2 = 0.0, 0.0, 0.0, 0.0
+        both = min(last, end) if first == 0 and begin == 0 else 0
+        for k in range(both):
+            p1 += w1[k] * P[k]
+            p2 += w2[k] * P[k]
+            n1 -= w1[k] * N[k]
+            n2 += w2[k] * N[k]
+        for k in range(max(first, both), last):
+            p1 += w1[k] * P[k]
+            p2 += w2[k] * P[k]
+        for k in range(max(begin, both), end):
+            n1 -= w1[k] * N[k]
+            n2 += w2[k] * N[k]
+        sums[0, i], sums[1, i], sums[2, i], sums[3, i] = p1, p2, n1, n2
+        low[i], high[i] = np.inf, -np.inf
+        if first < last:
+            low[i], high[i] = (first + 0.5) * dxi, (last - 0.5) * dxi
+            top = max(top, last)
+        if begin < end:
+            low[i] = -(end - 0.5) * dxi
+            high[i] = high[i] if first < last else -(begin + 0.5) * dxi
+            top = max(top, end)
+    return (top - 0.5) * dxi if top > 0 else 0.0
+
+
+@kernel
+def add_sides(sums: Array, F1: Array, F2: Array) -> None:
+    """The upwind flux (19): xi > 0 from the left cell, xi < 0 from the right one."""
+    for i in range(F1.size):
+        F1[i] = sums[0, i] + sums[2, i + 1]
+        F2[i] = sums[1, i] + sums[3, i + 1]
+
+
+@kernel
+def fill_held(
+    h: float, u: float, of_cell: float, u_of_cell: float, beta: float, dxi: float, averaged: bool, side: Array,
+    spare: Array,
+) -> tuple[int, int]:  # fmt: skip
+    """What a held face sends of xi > 0: the density of its own state, and no more than stands in the cell before it."""
+    begin, end = fill_occupied(h, u, beta, dxi, averaged, side)
+    first, last = fill_occupied(of_cell, u_of_cell, beta, dxi, averaged, spare)
+    begin = max(begin, first)
+    end = max(min(end, last), begin)
+    for k in range(begin, end):
+        side[k] = min(side[k], spare[k])
+    return begin, end
+
+
+@kernel
+def add_held(
+    h: Array, u: Array, h_left: Array, u_left: Array, h_right: Array, u_right: Array, held: Flags, still: Flags,
+    beta: float, dxi: float, averaged: bool, w1: Array, w2: Array, side: Array, spare: Array, sums: Array,
+    F1: Array, F2: Array, at_left: Flags, at_right: Flags,
+) -> None:  # fmt: skip
+    """The one flux of scheme 4; that of still faces is not asked for. Says which walls of each cell are held, too."""
+    for i in range(F1.size):
+        F1[i] = sums[0, i] + sums[2, i + 1]
+        F2[i] = sums[1, i] + sums[3, i + 1]
+        if held[i] and not still[i]:
+            begin, end = fill_held(h_left[i], u_left[i], h[i], u[i], beta, dxi, averaged, side, spare)
+            p1, p2 = sum_side(side, begin, end, w1, w2)
+            begin, end = fill_held(h_right[i], -u_right[i], h[i + 1], -u[i + 1], beta, dxi, averaged, side, spare)
+            n1, n2 = sum_side(side, begin, end, w1, w2)
+            F1[i], F2[i] = p1 - n1, p2 + n2
+        if i > 0:
+            at_right[i - 1] = held[i]
+        if i < at_left.size:
+            at_left[i] = held[i]
+
+
+@kernel
+def foresee(low: Array, high: Array, J: Array, h1: Array, dxi: float, half: int, forced: bool) -> tuple[bool, bool]:
+    """Of f after the force, without f: whether any of it may have left the window, and whether a node is surely empty.
+
+    A row of f stands where its cell and the two neighbours stood, and is moved by the force.
+    """
+    leaves, empty = False, False
+    for i in range(J.size):
+        slowest = min(low[i + 1], min(low[i], low[i + 2]))
+        quickest = max(high[i + 1], max(high[i], high[i + 2]))
+        if slowest > quickest:
+            empty = True
+            continue
+        first, last = math.floor(slowest / dxi) + half, math.floor(quickest / dxi) + half
+        if forced and J[i] != 0.0:
+            whole, _ = split_shift(J[i], h1[i], dxi, 2 * half)
+            if J[i] < 0.0:
+                first -= whole + 1
+            else:
+                last += whole + 1
+        leaves = leaves or first < 0 or last >= 2 * half
+        empty = empty or first > 0 or last < 2 * half - 1
+    return leaves, empty
