@@ -40,7 +40,8 @@ def test_rest_is_bitwise_in_both_wings(method: Macroscopic | Kinetic, zeta: floa
 def test_a_disturbed_pile_stops_again_and_stays(name: str, zeta: float, boundary: str, seed: int) -> None:
     """Noise of 1e-8 in h and u. Above the friction angle a film that spilled onto bare ground (< 1e-12) runs on.
 
-    Cell averages on a grid do so below the friction angle only: their second moment errs by n^-2.
+    At zeta = delta nothing slows down what runs downhill, so that its roundings may go on. Cell averages on a grid stop
+    below the friction angle only: their second moment errs by n^-2.
     """
     method = METHODS[name]
     scene = pile(zeta, boundary, seed)
@@ -50,8 +51,8 @@ def test_a_disturbed_pile_stops_again_and_stays(name: str, zeta: float, boundary
     heap = Profile(shaken, 1e-8 * rng.standard_normal(h.size) * (h > 0))
     run = simulate(replace(scene, heap=heap), method, steps(scene, method, 2000), 1000)
     film = (h == 0) & (run.h[-1] < 1e-12) & (abs(zeta) > DELTA)
-    assert (run.q[-1][~film] == 0).all()
-    assert np.abs(run.h[-1] - run.h[-2]).max() <= (1e-12 if film.any() else 0.0)
+    assert np.abs(run.q[-1][~film]).max() <= (1e-15 if abs(zeta) == DELTA else 0.0)
+    assert np.abs(run.h[-1] - run.h[-2]).max() <= (1e-12 if film.any() or abs(zeta) == DELTA else 0.0)
     assert np.abs(run.h[-1] - h).max() <= 1e-6
 
 
