@@ -1,6 +1,7 @@
 """Put tables and figures of a validation run into a page, between its markers.
 
-Run it after ``kinsim validate --full``: ``python .ci/tables.py out/validation docs/schemes.md``. A page asks for the
+Run it after ``kinsim validate --full``: ``python .ci/tables.py out/validation docs/schemes.md``; what is not in the
+folder stays as it is on the page. A page asks for the
 table number 2 of the script `scheme_4`, or for its claims, by
 
     <!-- table scheme_4 2 --> ... <!-- end -->        <!-- claims scheme_4 --> ... <!-- end -->
@@ -26,14 +27,18 @@ def main() -> None:
     folder, page = Path(sys.argv[1]), Path(sys.argv[2])
 
     def fill(found: re.Match[str]) -> str:
-        record = json.loads((folder / f"{found[3]}.json").read_text(encoding="utf-8"))
+        kept = folder / f"{found[3]}.json"
+        if not kept.exists():  # not run this time
+            return found[0]
+        record = json.loads(kept.read_text(encoding="utf-8"))
         made = table(record["tables"][int(found[4]) - 1]) if found[2] == "table" else claims(record)
         return found[1] + made + found[5]
 
     text = MARKED.sub(fill, page.read_text(encoding="utf-8"))
     page.write_text(text, encoding="utf-8")
     for name in LINKED.findall(text):
-        shutil.copyfile(folder / name, page.parent / "figures" / name)
+        if (folder / name).exists():
+            shutil.copyfile(folder / name, page.parent / "figures" / name)
 
 
 def table(kept: dict[str, Any]) -> str:

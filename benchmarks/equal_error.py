@@ -106,9 +106,10 @@ def reach(run: Callable[[int], Answer], start: int) -> tuple[float, float]:
 
 
 def main() -> None:
-    """Print a table in Markdown."""
+    """Print a table in Markdown, and write it where `.ci/tables.py` finds it for a page."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--clawpack", default=sys.executable if find_spec("clawpack") else "", metavar="PYTHON")
+    parser.add_argument("--out", type=Path, metavar="EQUAL_ERROR.JSON")
     parser.add_argument("--answer", nargs=2, metavar=("CELLS", "LIMITER"), help=argparse.SUPPRESS)
     asked = parser.parse_args()
     if asked.answer:
@@ -126,9 +127,17 @@ def main() -> None:
             ways[name] = (partial(pyclaw_run, asked.clawpack, limiter), 250)
     found = {name: reach(*way) for name, way in ways.items()}
     best = min(seconds for name, (_, seconds) in found.items() if name.startswith("scheme 4, second"))
-    print("| method | cells | time, ms | over the fastest second order of scheme 4 |\n|---|---|---|---|")
-    for name, (cells, seconds) in found.items():
-        print(f"| {name} | {cells:.0f} | {1e3 * seconds:.3g} | {seconds / best:.2f} |")
+    heads = ["method", "cells", "time, ms", "over the fastest second order of scheme 4"]
+    rows = [
+        [name, f"{cells:.0f}", f"{1e3 * seconds:.3g}", f"{seconds / best:.2f}"]
+        for name, (cells, seconds) in found.items()
+    ]
+    for row in (heads, ["---"] * len(heads), *rows):
+        print(f"| {' | '.join(row)} |")
+    if asked.out:
+        caption = "Time to L1(h) = 3e-4, by `benchmarks/equal_error.py` on one core"
+        record = {"tables": [{"caption": caption, "heads": heads, "rows": rows}]}
+        asked.out.write_text(json.dumps(record, indent=1), encoding="utf-8")
     if not asked.clawpack:
         print("\nPyClaw was left out: no clawpack here; name an interpreter that has it with --clawpack.")
 
