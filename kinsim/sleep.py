@@ -91,29 +91,31 @@ class Awake:
 
     def advance(self, h: Array, q: Array, dt: float) -> Books:
         """From (h, q), where `begin` stood, to (h1, q1)."""
-        nx, at = h.size, self.at
-        books = Books(0.0, 0.0, 0.0, 0.0)
-        low, high = self._cells if at is not self._whole else (0, nx)
-        if at is not None:
-            books = at.advance(dt)
-            self.cell_steps += at.now.q.size
-        left, right = self._padded() if at is not self._whole else (0, nx)
-        if at is not self._whole:
+        self._dt = dt
+        if self.at is not self._whole:
             self.h1[:], self.q1[:] = h, q
-            if at is not None:
-                inner = slice(low - left, high - left)
-                self.h1[low:high], self.q1[low:high] = at.now.h1[inner], at.now.q1[inner]
-        if at is not None:
-            first, last = changed(h, q, self.h1, self.q1, low, high)
-            self._awake = (max(first - REACH, 0), min(last + REACH, nx)) if first < last else (0, 0)
+        books = Books(0.0, 0.0, 0.0, 0.0) if self.at is None else self._step(self.at, h, q, dt)
+        return books._replace(inflow_left=dt * self._entering[0], inflow_right=dt * self._entering[1])
+
+    def _step(self, at: Stepper, h: Array, q: Array, dt: float) -> Books:
+        """Step the cells that are awake, and see which of them are so after it."""
+        nx = h.size
+        books = at.advance(dt)
+        self.cell_steps += at.now.q.size
+        low, high = left, right = 0, nx
+        if at is not self._whole:
+            (low, high), (left, right) = self._cells, self._padded()
+            inner = slice(low - left, high - left)
+            self.h1[low:high], self.q1[low:high] = at.now.h1[inner], at.now.q1[inner]
+        first, last = changed(h, q, self.h1, self.q1, low, high)
+        self._awake = (max(first - REACH, 0), min(last + REACH, nx)) if first < last else (0, 0)
         if books.window_loss:
             self._awake = (0, nx)
-        self._dt = dt
-        if at is not None and left == 0:
+        if left == 0:
             self._entering[0] = books.inflow_left / dt
-        if at is not None and right == nx:
+        if right == nx:
             self._entering[1] = books.inflow_right / dt
-        return books._replace(inflow_left=dt * self._entering[0], inflow_right=dt * self._entering[1])
+        return books
 
     def _choose(self) -> Stepper | None:
         """Who takes the step: nobody, a part, or the whole where the part would be nearly that or would wrap round."""

@@ -63,6 +63,8 @@ def example(kernel: object) -> list[object]:
             arguments.append(dice.uniform(0.1, 1.0, nx + 2))
         elif kind == "Array" and name in ("h_ghosted", "u_ghosted"):
             arguments.append(np.zeros(nx + 2))
+        elif kind == "Array" and name == "sums":
+            arguments.append(dice.uniform(0.1, 1.0, (4, nx + 2)))
         elif kind == "Array" and name == "m":
             arguments.append(dice.uniform(0.1, 1.0, (5, nx + (1 if "h_left" in dict(names) else 2))))
         elif kind == "Array" and name in ("h", "u", "m1", "m2") and name_of.endswith("of_cells"):

@@ -9,6 +9,9 @@ from ..kernel import kernel, kernel_part
 
 Array = NDArray[np.float64]
 
+TINY = float(np.finfo(float).tiny)
+"""Keeps a division by c defined on dry ground, where its weight is zero."""
+
 
 @kernel_part
 def ahead(h: float, u: float, beta: float, m1: float, m2: float) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from typing import Protocol
 
 import numpy as np
@@ -42,7 +43,7 @@ class Wing(Protocol):
         """f after the force; returns the mass that left the velocity window, per dx."""
 
 
-class WithoutDensity:
+class WithoutDensity(ABC):
     """A wing whose half-range moments are functions of (h, u): there is nothing to carry, and nothing to lose."""
 
     def __init__(self, scene: Scene) -> None:
@@ -74,7 +75,7 @@ class WithoutDensity:
         """The one flux of scheme 4."""
         self._flux(now.balanced, now.F1, now.F2)
 
-    def transport(self, now: Stages, lam: float) -> None:
+    def transport(self, now: Stages, lam: float) -> None:  # noqa: B027, nothing to do is the answer
         """There is no density to transport."""
 
     def pulled(self, now: Stages) -> Array:
@@ -85,8 +86,10 @@ class WithoutDensity:
         """There is no density to shift, and none is lost."""
         return 0.0
 
+    @abstractmethod
     def _flux_of_cells(self, h: Array, u: Array, F1: Array, F2: Array) -> None:
-        raise NotImplementedError
+        """The flux at the faces between ghosted cells."""
 
+    @abstractmethod
     def _flux(self, at: Faces, F1: Array, F2: Array) -> None:
-        raise NotImplementedError
+        """The flux of faces with states of their own."""

@@ -19,16 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..balance.interface import Faces
-from ..balance.sides import both_sides, faces_of_cells, faces_of_states
+from ..balance.sides import TINY, both_sides, faces_of_cells, faces_of_states
 from ..balance.stages import Stages
 from ..balance.wing import WithoutDensity
 from ..kernel import kernel
 from ..scene import Scene
 
 Array = NDArray[np.float64]
-
-TINY = float(np.finfo(float).tiny)
-"""Keeps a division by c defined on dry ground, where its weight is zero."""
 
 
 @cache

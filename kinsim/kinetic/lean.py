@@ -7,9 +7,9 @@ import numpy as np
 from ..balance.stages import Array, Stages, reach
 from .carry import carry
 from .equilibrium import EQUILIBRIA, Status
-from .occupied import add_held, add_sides, foresee, sum_cells
+from .occupied import add_held, foresee, sum_cells
 from .shift import shift_linear
-from .transport import transport
+from .transport import add_sides, transport
 from .velocity import Grid
 from .wing import Density
 
@@ -110,14 +110,8 @@ class OnDemand(Density):
     def B(self) -> Array:
         B = self._place("B", self._nx + 1 if self._scheme.has_faces else 0)
         if "B" not in self._made and B.size:
-            at, half, before = self._now.balanced, self.grid.half, self._before()
             where = np.flatnonzero(self._now.held)
-            rows = np.empty((where.size, self.grid.count))
-            states = (at.h_left[where], at.u_left[where], at.h_right[where], at.u_right[where])
-            self.fill(*states, rows, Status.empty(where.size))
-            np.minimum(rows[:, half:], before[where, half:], out=rows[:, half:])
-            np.minimum(rows[:, :half], before[where + 1, :half], out=rows[:, :half])
-            B[where] = rows
+            B[where] = self._held_rows(self._now, where, self._before(), 1.0, Status.empty(where.size))
         self._made.add("B")
         return B
 

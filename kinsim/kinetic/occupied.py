@@ -79,14 +79,6 @@ def sum_cells(
 
 
 @kernel
-def add_sides(sums: Array, F1: Array, F2: Array) -> None:
-    """The upwind flux (19): xi > 0 from the left cell, xi < 0 from the right one."""
-    for i in range(F1.size):
-        F1[i] = sums[0, i] + sums[2, i + 1]
-        F2[i] = sums[1, i] + sums[3, i + 1]
-
-
-@kernel
 def fill_held(
     h: float, u: float, of_cell: float, u_of_cell: float, beta: float, dxi: float, averaged: bool, side: Array,
     spare: Array,

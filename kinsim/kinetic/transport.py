@@ -27,6 +27,14 @@ def half_sums(rows: Array, w1: Array, w2: Array, P1: Array, P2: Array, N1: Array
 
 
 @kernel
+def add_sides(sums: Array, F1: Array, F2: Array) -> None:
+    """The upwind flux (19): xi > 0 from the left cell, xi < 0 from the right one."""
+    for i in range(F1.size):
+        F1[i] = sums[0, i] + sums[2, i + 1]
+        F2[i] = sums[1, i] + sums[3, i + 1]
+
+
+@kernel
 def transport(M: Array, B: Array, at_left: Flags, at_right: Flags, xi: Array, lam: float, f: Array) -> None:
     """f_i = M_i - lam xi (M_{i+1/2} - M_{i-1/2}): (23) before the shift.
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..balance.interface import Faces
 from ..balance.schemes import Scheme
@@ -11,7 +12,7 @@ from ..scene import Scene
 from .equilibrium import Equilibrium, Status
 from .equilibrium.averages import mass_outside
 from .force import Force
-from .transport import half_sums, occupied, outermost, transport, transport_reflecting
+from .transport import add_sides, half_sums, occupied, outermost, transport, transport_reflecting
 from .velocity import Grid, Uniform, Window
 
 
@@ -115,10 +116,8 @@ class Density:
 
     def upwind_flux(self, now: Stages) -> None:
         """F: the half-range sums of M, xi > 0 from the left cell and xi < 0 from the right one, (19)."""
-        P1, P2, N1, N2 = self._sums
-        half_sums(self.M, self._w1, self._w2, P1, P2, N1, N2)
-        np.add(P1[:-1], N1[1:], out=now.F1)
-        np.add(P2[:-1], N2[1:], out=now.F2)
+        half_sums(self.M, self._w1, self._w2, *self._sums)
+        add_sides(self._sums, now.F1, now.F2)
 
     def balanced_flux(self, now: Stages) -> None:
         """F~: the sums of the density at balanced faces, (25)."""
@@ -130,27 +129,29 @@ class Density:
         np.add(P2, N2, out=now.B2)
 
     def held_flux(self, now: Stages) -> None:
-        """The one flux of scheme 4: sums of the cells' densities, and of a density of their own at held faces.
-
-        No face sends more than stands before it, rounding included.
-        """
-        half, at, sloped = self.grid.half, now.balanced, self._scheme.sloped
+        """The one flux of scheme 4: sums of the cells' densities, and of a density of their own at held faces."""
+        sloped = self._scheme.sloped
         now.at_left[:], now.at_right[:] = now.held[:-1] | sloped, now.held[1:] | sloped
         if not sloped:
             self.upwind_flux(now)
         where = np.flatnonzero(now.held)
-        rows, status = np.empty((where.size, self.grid.count)), Status.empty(where.size)
+        status = Status.empty(where.size)
         if where.size:
-            self.fill(at.h_left[where], at.u_left[where], at.h_right[where], at.u_right[where], rows, status)
-            most = 2.0 if sloped else 1.0
-            np.minimum(rows[:, half:], most * self.M[where, half:], out=rows[:, half:])
-            np.minimum(rows[:, :half], most * self.M[where + 1, :half], out=rows[:, :half])
-            self.B[where] = rows
+            self.B[where] = self._held_rows(now, where, self.M, 2.0 if sloped else 1.0, status)
         self.face_status.put(where, status)
         chosen = slice(None) if sloped else where
         P1, P2, N1, N2 = np.empty((4, now.held[chosen].size))
         half_sums(self.B[chosen], self._w1, self._w2, P1, P2, N1, N2)
         now.F1[chosen], now.F2[chosen] = P1 + N1, P2 + N2
+
+    def _held_rows(self, now: Stages, where: NDArray[np.intp], M: Array, share: float, status: Status) -> Array:
+        """Densities at the held faces `where`; no face sends more than `share` times what stands before it in M."""
+        half, at = self.grid.half, now.balanced
+        rows = np.empty((where.size, self.grid.count))
+        self.fill(at.h_left[where], at.u_left[where], at.h_right[where], at.u_right[where], rows, status)
+        np.minimum(rows[:, half:], share * M[where, half:], out=rows[:, half:])
+        np.minimum(rows[:, :half], share * M[where + 1, :half], out=rows[:, :half])
+        return rows
 
     def transport(self, now: Stages, lam: float) -> None:
         """f = M - lam xi (M_{i+1/2} - M_{i-1/2}), (23) before the shift; a window makes room for the shift."""

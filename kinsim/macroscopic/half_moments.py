@@ -18,13 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arc import arc
-from ..balance.sides import both_sides, faces_of_cells, faces_of_states
+from ..balance.sides import TINY, both_sides, faces_of_cells, faces_of_states
 from ..kernel import kernel, kernel_relaxed
 
 Array = NDArray[np.float64]
-
-TINY = float(np.finfo(float).tiny)
-"""Keeps a division by c defined on dry ground, where its weight is zero."""
 
 
 @kernel_relaxed("contract")
