@@ -18,6 +18,7 @@ import fluxes
 import grid
 import growth
 import shell
+import studies
 from rich.console import Console
 from rich.table import Table
 from rows import Row
@@ -37,6 +38,7 @@ def main() -> None:
         fluxes.rows(asked.quick),
         growth.rows(asked.quick),
         shell.rows(asked.quick),
+        studies.rows(asked.quick),
     ):
         for row in rows:
             found.append(row)

@@ -28,6 +28,7 @@ from .scene import Scene as Scene
 from .simulate import simulate as simulate
 from .step import Step as Step
 from .step import step as step
+from .studies.study import study as study
 from .watch.dump import Dump as Dump
 
 __version__: str

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from .commands import sweep
 from .errors import InputError
+from .shell import EXIT_CODES, Force, MethodKind, SceneName, Settings, complain, keep_apart, read_scene, told
 
 if TYPE_CHECKING:
     from .read import SceneFile
@@ -23,44 +22,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-
-
-class MethodKind(StrEnum):
-    """The two wings."""
-
-    KINETIC = "kinetic"
-    MACROSCOPIC = "macroscopic"
-
-
-SceneName = Annotated[
-    str, typer.Argument(metavar="NAME|FILE", help="A built-in scene (see: kinsim scenes), or a scene file.")
-]
-Settings = Annotated[
-    list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change a key, for example friction.delta=pi/12; may be repeated."),
-]
-Force = Annotated[bool, typer.Option("--force", help="Run although the CFL bound is broken.")]
-
-EXIT_CODES = {"finished": 0, "at-rest": 0, "interrupted": 130}
-"""By verdict; 1 for a run that was stopped. Bad input is 2."""
-
-
-@contextmanager
-def _told() -> Iterator[None]:
-    """Bad input is told in one line, without a traceback."""
-    try:
-        yield
-    except InputError as error:
-        _complain(str(error), 2)
-    except MemoryError:
-        _complain("not enough memory; take fewer cells or velocity nodes", 2)
-    except KeyboardInterrupt:
-        _complain("interrupted; nothing was written", 130)
-
-
-def _complain(line: str, code: int) -> None:
-    typer.echo(" ".join(line.split()), err=True)
-    raise typer.Exit(code)
 
 
 def _version(wanted: bool) -> None:
@@ -81,7 +42,7 @@ def _options(
 
 
 @app.command()
-@_told()
+@told()
 def scenes() -> None:
     """List the built-in scenes and their figures in the paper."""
     from .overview import scene_list
@@ -91,7 +52,7 @@ def scenes() -> None:
 
 
 @app.command()
-@_told()
+@told()
 def rooms() -> None:
     """List every family and its variants, each with a line and the equation it implements."""
     from .overview import room_list
@@ -100,7 +61,7 @@ def rooms() -> None:
 
 
 @app.command()
-@_told()
+@told()
 def run(
     name: SceneName,
     method: Annotated[MethodKind | None, typer.Option(help="Take this wing instead of the one in the file.")] = None,
@@ -136,13 +97,13 @@ def run(
     from .simulate import simulate
     from .store import check_destination
 
-    file = _read(name, settings, method)
+    file = read_scene(name, settings, method)
     if out:
         check_destination(out)
     for picture in (plot, density):
         if picture:
             check_picture(picture)
-    _keep_apart(name, out, plot, density)
+    keep_apart(name, out, plot, density)
     dumps = read_dumps(dump or [])
     if density and not dumps:
         raise InputError("--density draws a dump; ask for one, for example --dump every=1000")
@@ -168,12 +129,12 @@ def run(
         run_report(ran, file.method, {"--out": out, "--plot": plot}, Path(name).stem)
         causes_report(ran)
     elif code:
-        _complain(str(ran.verdict), code)
+        complain(str(ran.verdict), code)
     raise typer.Exit(code)
 
 
 @app.command()
-@_told()
+@told()
 def compare(
     name: SceneName,
     settings: Settings = None,
@@ -191,7 +152,7 @@ def compare(
     if plot:
         check_picture(plot)
         seams = True
-    file = _read(name, settings, MethodKind.KINETIC)
+    file = read_scene(name, settings, MethodKind.KINETIC)
     methods = [file.method, file.method.twin]  # type: ignore[union-attr]
     with Watched() as progress:
         measured = compare(
@@ -206,7 +167,7 @@ def compare(
 
 
 @app.command()
-@_told()
+@told()
 def crosscheck(
     flux: Annotated[str, typer.Argument(metavar="MODULE:NAME", help="A flux(hl, ul, hr, ur, beta) -> (F1, F2).")],
     beta: Annotated[float, typer.Option(help="As in equation (1).")] = 0.4,
@@ -228,7 +189,7 @@ def crosscheck(
 
 
 @app.command()
-@_told()
+@told()
 def validate(
     full: Annotated[bool, typer.Option("--full", help="The paper's sizes and finer; takes long.")] = False,
     only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="This script only; may be repeated.")] = None,
@@ -250,7 +211,7 @@ def validate(
 
 
 @app.command()
-@_told()
+@told()
 def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file, or a built-in scene.")]) -> None:
     """Validate a scene file, and print it with all that was filled in."""
     from .overview import filled_in, first_courant
@@ -263,22 +224,8 @@ def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file
         raise InputError(f"{name}: clock: the first step breaks the CFL bound (28); take a smaller one, or force it")
 
 
-def _read(name: str, settings: list[str] | None, method: MethodKind | None) -> SceneFile:
-    from .read import change, check, read_keys, take_method
-
-    keys = read_keys(name)
-    change(keys, settings or [])
-    if method:
-        take_method(keys, method.value)
-    return check(keys, name)
-
-
-def _keep_apart(*names: str | Path | None) -> None:
-    """No file is written over another one, nor over the scene itself."""
-    places = [Path(name).resolve() for name in names if name]
-    for place in places:
-        if places.count(place) > 1:
-            raise InputError(f"{place}: is named twice; each file needs a name of its own")
+for command in (sweep,):
+    app.command()(told()(command))
 
 
 def _final_density(file: SceneFile, dumps: list[Dump]) -> list[Dump]:

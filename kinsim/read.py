@@ -111,15 +111,20 @@ def change(keys: dict[str, Any], settings: Sequence[str]) -> None:
     """Put settings ``friction.delta=pi/12`` over the keys of a scene file; a value is TOML, or else a string."""
     for setting in settings:
         name, equals, text = setting.partition("=")
-        *tables, last = (part.strip() for part in name.split("."))
-        if not equals or not all([*tables, last]):
+        if not equals or not all(part.strip() for part in name.split(".")):
             raise InputError(f"--set {setting}: is not key=value; write for example --set friction.delta=pi/12")
-        table = keys
-        for step in tables:
-            table = table.setdefault(step, {})
-            if not isinstance(table, dict):
-                raise InputError(f"--set {setting}: {step} is not a table of keys; leave out what follows it")
-        table[last] = _toml_value(text)
+        put(keys, name, toml_value(text), f"--set {setting}")
+
+
+def put(keys: dict[str, Any], name: str, given: Any, place: str) -> None:
+    """Put a value at a dotted name into the keys of a scene file; `place` names the request."""
+    *tables, last = (part.strip() for part in name.split("."))
+    table = keys
+    for step in tables:
+        table = table.setdefault(step, {})
+        if not isinstance(table, dict):
+            raise InputError(f"{place}: {step} is not a table of keys; leave out what follows it")
+    table[last] = given
 
 
 SHARED = ("scheme", "coupling", "order", "limiter", "statics")
@@ -146,7 +151,7 @@ def read_dumps(requests: Sequence[str]) -> list[Dump]:
             key, equals, text = part.partition("=")
             if not equals:
                 raise InputError(f"--dump {request}: {part!r} is not KEY=VALUE; write for example every=500")
-            keys[key.strip()] = [_toml_value(end) for end in text.split(":")] if ":" in text else _toml_value(text)
+            keys[key.strip()] = [toml_value(end) for end in text.split(":")] if ":" in text else toml_value(text)
         keys.setdefault("name", keys.get("stage", "force"))
         try:
             dumps.append(TypeAdapter(Dump).validate_python(keys))
@@ -167,7 +172,8 @@ def _find(name_or_path: str | Path) -> Path:
     raise InputError(f"{name}: no such scene; {hint}")
 
 
-def _toml_value(text: str) -> Any:
+def toml_value(text: str) -> Any:
+    """A value of TOML, or else the text itself."""
     try:
         keys = tomllib.loads(f"value = {text}")
     except (tomllib.TOMLDecodeError, ValueError, RecursionError):

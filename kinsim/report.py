@@ -174,3 +174,25 @@ def validation_report(records: Sequence[Mapping[str, Any]], out: Path) -> None:
             line = f"[red]broke:[/] {record['name']}: {escape(record['error'])}"
             console.print(line, highlight=False, soft_wrap=True)
     console.print(f"report: {out / 'index.html'}", highlight=False, soft_wrap=True)
+
+
+SHOWN = 40
+"""Members that a table names; the file has all of them."""
+
+
+def study_report(found: xarray.Dataset, out: Path) -> None:
+    """A line for each member of a study, and where all of it is."""
+    dims = [str(dim) for dim in found["verdict"].dims]
+    rows = found[[name for name in ("verdict", "wall_time", "mass_drift") if name in found]]
+    paths = [str(name) for name in found.coords if found[name].dims and set(found[name].dims) <= set(dims)]
+    table = plain_table(*paths, "wall time", "mass drift", "verdict")
+    for where in list(np.ndindex(*(found.sizes[dim] for dim in dims)))[:SHOWN]:
+        at = rows.isel(dict(zip(dims, where, strict=True)))
+        seconds, drift = (f"{float(at[name]):.3g}" if name in at else "" for name in ("wall_time", "mass_drift"))
+        values = [str(at[path].item()) for path in paths]
+        table.add_row(*map(escape, values), seconds, drift, escape(str(at["verdict"].item()).split(";")[0]))
+    console = Console()
+    console.print(table)
+    more = found["verdict"].size - SHOWN
+    told = f"and {more} more; " if more > 0 else ""
+    console.print(f"{told}study: written to {escape(str(out))}", highlight=False, soft_wrap=True)

@@ -1,0 +1,72 @@
+"""The commands that take many runs. As in `cli`, each imports its own."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .shell import EXIT_CODES, Force, SceneName, Settings, keep_apart, read_scene
+
+Resume = Annotated[bool, typer.Option("--resume", help="Take what was finished before, and do the rest.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")]
+
+
+def sweep(
+    name: SceneName,
+    over: Annotated[
+        list[str],
+        typer.Option(
+            metavar="KEY=VALUES", help="Vary a key: chute.zeta=0:0.5:11 (from, to, how many) or 0,0.1; may be repeated."
+        ),
+    ],
+    settings: Settings = None,
+    paired: Annotated[bool, typer.Option("--paired", help="Side by side, not every combination.")] = False,
+    field: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Keep this history too: h, mass, ...; may be repeated.")
+    ] = None,
+    out: Annotated[Path, typer.Option(metavar="SWEEP.NC", help="Write all members to this netCDF file.")] = Path(
+        "sweep.nc"
+    ),
+    resume: Resume = False,
+    workers: Annotated[int, typer.Option(help="Processes to start; 0 runs all here.")] = 0,
+    scheduler: Annotated[str | None, typer.Option(metavar="ADDRESS", help="A Dask scheduler that runs.")] = None,
+    quiet: Quiet = False,
+    force: Force = False,
+) -> None:
+    """Run a scene many times, with some of its values replaced.
+
+    Finished members are kept beside the file, in SWEEP.NC.members; Ctrl-C costs only those under way. Exit code 1 if
+    a member was stopped.
+    """
+    from .overview import saved_every
+    from .progress import Watched
+    from .report import study_report
+    from .store import check_destination, write_netcdf
+    from .studies.study import study
+    from .studies.vary import read_over
+
+    file = read_scene(name, settings, None)
+    check_destination(out)
+    keep_apart(name, out)
+    with Watched(quiet) as progress:
+        found = study(
+            file.scene,
+            file.method,
+            file.clock,
+            read_over(over),
+            paired=paired,
+            fields=field or (),
+            save_every=saved_every(file),
+            force=force,
+            keep=f"{out}.members",
+            resume=resume,
+            workers=workers,
+            scheduler=scheduler,
+            tell=progress.tell,
+        )
+    write_netcdf(found, out)
+    if not quiet:
+        study_report(found, out)
+    raise typer.Exit(max(EXIT_CODES.get(kind, 1) for kind in found["verdict_kind"].to_numpy().ravel().tolist()))

@@ -1,0 +1,1 @@
+"""Many runs on one mechanism: members, where finished ones are kept, who runs them, and one dataset of it all."""

@@ -1,0 +1,217 @@
+"""Studies: every combination once, failures as rows, nothing computed twice, nothing lost."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from contextlib import ExitStack
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+from typer.testing import CliRunner
+
+from kinsim import Courant, Fitted, Fixed, InputError, Kinetic, Macroscopic, Uniform, load_scene, simulate, study
+from kinsim.cli import app
+from kinsim.studies import engine, record
+from kinsim.studies.member import Member
+from kinsim.studies.record import Folder, perform
+from kinsim.studies.vary import read_over
+
+SCENE, _, _ = load_scene("silo")
+CLOCK = Fixed(1e-3, 20)
+OVER = {"chute.zeta": [0.0, "pi/20", 0.3], "cells.count": [40, 80]}
+
+
+def test_every_combination_is_the_run_that_it_names() -> None:
+    found = study(SCENE, Macroscopic(), CLOCK, {"chute.zeta": [0.0, "pi/20"], "method.order": [1, 2]}, fields=["mass"])
+    assert found["h"].dims == ("chute.zeta", "method.order", "x")
+    np.testing.assert_allclose(found["chute.zeta"], [0.0, np.pi / 20])
+    keys = {"cells": SCENE.cells, "heap": SCENE.heap, "friction": SCENE.friction, "epsilon": SCENE.epsilon}
+    one = simulate(type(SCENE)(**keys, chute={"zeta": "pi/20"}), Macroscopic(order=2), CLOCK, 20)
+    at = found.isel({"chute.zeta": 1, "method.order": 1})
+    np.testing.assert_array_equal(at["h"], one.h[-1])
+    np.testing.assert_array_equal(at["history_mass"], one.entries["mass"])
+    assert (int(at["cell_steps"]), float(at["mass_drift"])) == (20 * 320, one.mass_drift)
+    assert float(at["u_max"]) == one.entries["u_max"].max()
+
+
+def test_paired_members_of_unlike_sizes_are_padded() -> None:
+    over = {
+        "method": [Kinetic(velocity=Uniform(8)), Kinetic(velocity=Fitted(3)), Macroscopic()],
+        "cells.count": [40, 80, 20],
+    }
+    found = study(SCENE, Kinetic(), Courant(0.5, 0.1), over, paired=True, fields=["h"], save_every=2)
+    assert found["method"].values.tolist() == [
+        "kinetic, scheme 4, 8 nodes", "kinetic, scheme 4, 3 fitted nodes", "macroscopic, scheme 4"]  # fmt: skip
+    assert (found["h"].notnull().sum("cell") == found["cells.count"]).all()
+    for member in range(3):
+        last = int(found["history_t"][member].notnull().sum()) - 1
+        np.testing.assert_array_equal(found["history_h"][member, last], found["h"][member])
+
+
+def test_a_member_that_fails_is_a_row_with_its_verdict(monkeypatch: pytest.MonkeyPatch) -> None:
+    over = {"method.scheme": [4, 1], "method.order": [1, 2], "clock.dt": [1e-3, 1.0]}
+    found = study(SCENE, Macroscopic(), CLOCK, over)
+    kinds = found["verdict_kind"].values
+    assert kinds[:, :, 0].tolist() == [["finished", "finished"], ["finished", "refused"]]
+    assert (kinds[:, :, 1] == "refused").all()
+    assert "breaks the CFL bound" in found["verdict"].values[0, 0, 1]
+    assert "belongs to scheme 4" in found["verdict"].values[1, 1, 0]
+    assert np.isnan(found["h"].values[1, 1]).all()
+
+    def broken(*_: object, **__: object) -> None:
+        raise ZeroDivisionError("on purpose")
+
+    monkeypatch.setattr(record, "simulate", broken)
+    assert study(SCENE, Macroscopic(), CLOCK, {"chute.zeta": [0, 1]})["verdict"].values.tolist() == [
+        "ZeroDivisionError: on purpose"] * 2  # fmt: skip
+
+
+def test_repeats_are_rounds_that_time_and_traced_members_know_their_memory() -> None:
+    found = study(SCENE, Kinetic(), CLOCK, {"method.velocity.count": [8, 512]}, repeats=3, traced=True)
+    assert found["wall_time"].dims == ("method.velocity.count", "repeat")
+    assert len(set(found["wall_time"].values.ravel().tolist())) == 6
+    assert found["memory"].values[1] > found["memory"].values[0] > 320 * 8
+
+
+def test_an_interrupt_costs_only_the_member_under_way(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = study(SCENE, Macroscopic(), CLOCK, OVER)
+    done: list[Member] = []
+
+    def counted(member: Member, progress: object = None) -> record.Record:
+        done.append(member)
+        return perform(member)
+
+    def stop(what: str, share: float) -> None:
+        if what == "member 4 of 6":
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(engine, "perform", counted)
+    with pytest.raises(KeyboardInterrupt, match=r"3 of 6 members are done, kept in .*; --resume"):
+        study(SCENE, Macroscopic(), CLOCK, OVER, keep=tmp_path / "kept", tell=stop)
+    assert len(list((tmp_path / "kept").iterdir())) == len(done) == 3
+    (tmp_path / "kept" / f"{done[0].key}.npz").write_bytes(b"half a file")
+    rest = study(SCENE, Macroscopic(), CLOCK, OVER, keep=tmp_path / "kept", resume=True)
+    assert len(done) == 3 + 4
+    xarray.testing.assert_identical(*(one.drop_vars(["wall_time", "total_time"]) for one in (whole, rest)))
+    study(SCENE, Macroscopic(), CLOCK, OVER, keep=tmp_path / "kept", resume=True)
+    assert len(done) == 7
+    study(SCENE, Macroscopic(), Fixed(1e-3, 21), OVER, keep=tmp_path / "kept", resume=True)
+    assert len(done) == 13
+
+
+def test_a_run_that_was_interrupted_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(member: Member, progress: object = None) -> record.Record:
+        return record.failed("interrupted", "interrupted")
+
+    monkeypatch.setattr(engine, "perform", interrupted)
+    with pytest.raises(KeyboardInterrupt, match="0 of 6"):
+        study(SCENE, Macroscopic(), CLOCK, OVER, keep=tmp_path / "kept")
+    assert not list((tmp_path / "kept").iterdir())
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        ({"over": {}}, "nothing varies"),
+        ({"over": {"chute.zeta": []}}, "the list is empty"),
+        ({"over": {"chute.zeta": 3}}, "should be a list of values, got a int"),
+        ({"over": {"chute.zta": [1]}}, "did you mean zeta"),
+        ({"over": {"chute.zeta.deep": [1]}}, "zeta is not a table of keys"),
+        ({"over": {"chute.zeta": [0, 1], "clock.dt": [1e-3]}, "paired": True}, "2 of chute.zeta, 1 of clock.dt"),
+        ({"over": OVER, "fields": ["hight"]}, "no field 'hight'"),
+        ({"over": OVER, "repeats": 0}, "repeats = 0 is below 1"),
+        ({"over": OVER, "workers": -1}, "workers = -1"),
+        ({"over": OVER, "workers": 1, "scheduler": "tcp://127.0.0.1:1"}, "leave out"),
+        ({"over": OVER, "keep": "/dev/null/kept"}, "no folder can be made there"),
+    ],
+)
+def test_bad_requests_get_one_line(options: dict[str, object], line: str) -> None:
+    with pytest.raises(InputError, match=line) as told:
+        study(SCENE, Macroscopic(), CLOCK, **options)
+    assert "\n" not in str(told.value)
+
+
+def test_lists_from_the_command_line() -> None:
+    tables = 'e={kind="fitted"},{kind="uniform"}'
+    assert read_over(["a=0:4:3", "b=0:pi:2", "c=1,2.5", "d=pi/4,pi/5", tables, "f=hold"]) == {
+        "a": [0, 2, 4], "b": [0.0, np.pi], "c": [1, 2.5], "d": ["pi/4", "pi/5"],
+        "e": [{"kind": "fitted"}, {"kind": "uniform"}], "f": ["hold"],
+    }  # fmt: skip
+    for bad in ("a", "a=", "=1", "a=0:1:1", "a=0:x:3", "a=0:1:x"):
+        with pytest.raises(InputError, match="--over"):
+            read_over([bad])
+    with pytest.raises(InputError, match="named twice"):
+        read_over(["a=1", "a=2"])
+
+
+def test_the_command_writes_one_file_and_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = ["sweep", "silo", "--over", "method.kind=kinetic,macroscopic", "--over", "clock.dt=0.001,1",
+             "--set", "clock.steps=20", "--set", "cells.count=40", "--field", "h"]  # fmt: skip
+    done = CliRunner().invoke(app, words, env={"COLUMNS": "200"})
+    assert done.exit_code == 1
+    assert "study: written to sweep.nc" in done.stdout
+    assert done.stdout.count("breaks the CFL bound") == 2
+    assert done.stdout.count("finished at t = 0.02 after 20 steps") == 2
+    with xarray.open_dataset("sweep.nc", engine="h5netcdf") as kept:
+        assert kept["history_h"].dims == ("method.kind", "clock.dt", "row", "x")
+
+    def never(member: Member, progress: object = None) -> record.Record:
+        raise AssertionError(member)
+
+    monkeypatch.setattr(engine, "perform", never)
+    assert CliRunner().invoke(app, [*words, "--resume"]).exit_code == 1
+
+
+WAIT = 60.0
+"""Seconds after which a process that should have said something is given up."""
+
+
+def test_a_worker_killed_in_the_middle_loses_nothing_and_doubles_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A real scheduler and two worker processes on loopback; one is killed when the first member is in."""
+    over = {"chute.zeta": [0.01 * k for k in range(8)]}
+    clock = Fixed(1e-4, 1500)
+    saved: list[str] = []
+    save = Folder.save
+    monkeypatch.setattr(Folder, "save", lambda self, key, kept: (saved.append(key), save(self, key, kept))[1])
+    with ExitStack() as stack:
+
+        def start(*words: str) -> subprocess.Popen[bytes]:
+            command = [sys.executable, "-m", "dask", *words]
+            process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+            stack.callback(process.wait)
+            stack.callback(process.kill)
+            return process
+
+        start("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", "at.json")
+        given_up = time.monotonic() + WAIT
+        while not (tmp_path / "at.json").exists():
+            assert time.monotonic() < given_up
+            time.sleep(0.05)
+        address = json.loads((tmp_path / "at.json").read_text())["address"]
+        alone = ("--no-nanny", "--no-dashboard", "--nthreads", "1", "--host", "127.0.0.1")
+        first, second = (start("worker", address, *alone) for _ in range(2))
+        import distributed
+
+        with distributed.Client(address, timeout=WAIT) as client:
+            client.wait_for_workers(2, timeout=WAIT)
+
+        def kill(what: str, share: float) -> None:
+            if what == "1 of 8 members":
+                os.kill(first.pid, signal.SIGKILL)
+
+        found = study(SCENE, Macroscopic(), clock, over, scheduler=address, keep=tmp_path / "kept", tell=kill)
+        assert first.wait(WAIT) == -signal.SIGKILL
+        assert second.poll() is None
+    assert len(saved) == len(set(saved)) == len(list((tmp_path / "kept").iterdir())) == 8
+    here = study(SCENE, Macroscopic(), clock, over)
+    xarray.testing.assert_identical(*(one.drop_vars(["wall_time", "total_time"]) for one in (found, here)))
