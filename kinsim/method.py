@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from .balance.scheme4 import Limiter
 from .balance.schemes import Coupling
@@ -15,8 +15,11 @@ from .kinetic.project import ProjectionName
 from .kinetic.velocity import Fitted, Uniform, Velocity, Window
 from .value import kind, value
 
-SchemeNumber = Literal[1, 2, 3, 4]
-Order = Literal[1, 2]
+NoFlag = BeforeValidator(lambda given: str(given) if isinstance(given, bool) else given)
+"""True is 1 to Python, and no scheme."""
+
+SchemeNumber = Annotated[Literal[1, 2, 3, 4], NoFlag]
+Order = Annotated[Literal[1, 2], NoFlag]
 
 Statics = Literal["hold", "reflect"]
 
@@ -79,7 +82,10 @@ class Kinetic:
         if self.order == 2 and isinstance(self.velocity, Window):
             raise ValueError("order 2 takes its two stages on one grid; take uniform or fitted nodes, not a window")
         if self.order == 2 and (self.projection != "flux-difference" or self.force == "shift-exact"):
-            raise ValueError("order 2 averages densities on one grid: flux-difference, and a shift that moves no nodes")
+            raise ValueError(
+                "order 2 averages densities on one grid; take projection 'flux-difference' and another force than "
+                "'shift-exact', which moves the nodes"
+            )
         plain = ("cell-average", "shift-linear", "flux-difference")
         if isinstance(self.velocity, Fitted):
             if (self.equilibrium, self.force, self.projection) != plain:
@@ -122,6 +128,7 @@ def _check_scheme(method: Kinetic | Macroscopic) -> None:
     """Refuse keys that the scheme does not read."""
     plain = Macroscopic.__dataclass_fields__
     for name, belongs, read in (
+        ("coupling", "scheme 3", method.scheme == 3),
         ("order", "scheme 4", method.scheme == 4),
         ("limiter", "order 2 of scheme 4", method.order == 2),
         ("statics", "order 1 of scheme 4", method.scheme == 4 and method.order == 1),

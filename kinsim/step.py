@@ -22,6 +22,7 @@ class Step:
     """Every stage of one step as arrays; cells (nx,), faces (nx + 1,), densities (nx, n).
 
     Attributes:
+        dt: How long the step is.
         h, u: State at level n.
         upwind, balanced: Face states (19), and (25) or the held ones of scheme 4; `balanced` is None where the scheme
             has none.
@@ -41,6 +42,7 @@ class Step:
         books: What the step did to the mass.
     """
 
+    dt: float
     h: Array
     u: Array
     upwind: Faces
@@ -73,8 +75,12 @@ def step(scene: Scene, method: Kinetic | Macroscopic, h: Array, q: Array, dt: fl
         dt: Time step.
 
     Raises:
-        InputError: Wrong shapes, h < 0, values that are not finite, or dt <= 0.
+        InputError: Arguments of other kinds, wrong shapes, h < 0, values that are not finite, or dt <= 0.
     """
+    if not (isinstance(scene, Scene) and isinstance(method, Kinetic | Macroscopic)):
+        raise InputError(
+            f"step: got {scene!r:.60} and {method!r:.60}; give a Scene, then a Kinetic or Macroscopic method"
+        )
     h, q = (np.array(array, dtype=float) for array in (h, q))
     nx = scene.cells.count
     if h.shape != (nx,) or q.shape != (nx,):
@@ -96,7 +102,7 @@ def step(scene: Scene, method: Kinetic | Macroscopic, h: Array, q: Array, dt: fl
     scheme = stepper.scheme
     states = {Scheme1: now.upwind, Held: now.balanced}.get(type(scheme))
     return Step(
-        h=now.h[1:-1], u=now.u[1:-1], upwind=now.upwind, balanced=now.balanced if scheme.has_faces else None,
+        dt=dt, h=now.h[1:-1], u=now.u[1:-1], upwind=now.upwind, balanced=now.balanced if scheme.has_faces else None,
         states=states,
         half=stepper.wing.half_moments(now)[:, 1:-1], flux=np.array([now.F1, now.F2]),
         balanced_flux=np.array([now.B1, now.B2]) if scheme.uses_balanced else None,

@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from kinsim import Cells, ConstantSlope, Coulomb, Fitted, Fixed, Kinetic, Macroscopic, Scene, Uniform
+from kinsim import Cells, ConstantSlope, Coulomb, Fitted, Fixed, Kinetic, Macroscopic, Profile, Scene, Uniform
 from kinsim.exact import random_pile
+from kinsim.stepper import Heun, Stepper
 
 EPS = float(np.finfo(float).eps)
 DELTA = 0.3
@@ -47,7 +48,7 @@ LEANING_ANY = pytest.mark.parametrize(("zeta", "boundary", "seed"), [(*of, seed)
 
 def limit(method: Macroscopic | Kinetic) -> float:
     """The largest Courant number."""
-    return 0.5 if method.order == 2 else 1.0
+    return Heun.limit if method.order == 2 else Stepper.limit
 
 
 def pile(zeta: float, boundary: str, seed: int, fill: float = 1.0) -> Scene:
@@ -58,6 +59,16 @@ def pile(zeta: float, boundary: str, seed: int, fill: float = 1.0) -> Scene:
         cells, pull=s, resistance=R, beta=beta, fill=fill, per="face", rng=seed, lowest=LOWEST[seed % len(LOWEST)]
     )
     return Scene(cells, heap, ConstantSlope(zeta), Coulomb(DELTA), boundary, 0.4)
+
+
+def leaning(zeta: float, lowest: float, share: float, seed: int) -> Scene:
+    """A random pile of 50 cells on a steep chute, that takes 100 percent of the bound downhill at a share of faces."""
+    s, R, beta = math.sin(zeta), math.cos(zeta) * math.tan(DELTA), 0.4 * math.cos(zeta)
+    rng = np.random.default_rng(seed)
+    theta = np.where(rng.random(49) < share, -np.sign(zeta), rng.uniform(-1, 1, 49))
+    cells = Cells(0.0, 5.0, 50)
+    h = np.concatenate([[0.0], np.cumsum((s + theta * R) * cells.dx / beta)])
+    return Scene(cells, Profile(h - h.min() + lowest), ConstantSlope(zeta), Coulomb(DELTA), "wall", 0.4)
 
 
 def steps(scene: Scene, method: Macroscopic | Kinetic, count: int, fastest: float = 0.5) -> Fixed:

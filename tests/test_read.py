@@ -223,11 +223,11 @@ def test_bad_settings(folder, setting):
 
 
 def test_taking_the_other_wing_keeps_scheme_and_coupling():
-    keys = {"method": {"scheme": 2, "coupling": "face", "velocity": {"count": 64}}}
+    keys = {"method": {"scheme": 3, "coupling": "face", "velocity": {"count": 64}}}
     take_method(keys, "macroscopic")
-    assert keys["method"] == {"kind": "macroscopic", "scheme": 2, "coupling": "face"}
+    assert keys["method"] == {"kind": "macroscopic", "scheme": 3, "coupling": "face"}
     take_method(keys, "kinetic")
-    assert keys["method"] == {"kind": "kinetic", "scheme": 2, "coupling": "face"}
-    assert check({**read_keys("silo"), **keys}, "x").method == Kinetic(scheme=2, coupling="face")
+    assert keys["method"] == {"kind": "kinetic", "scheme": 3, "coupling": "face"}
+    assert check({**read_keys("silo"), **keys}, "x").method == Kinetic(scheme=3, coupling="face")
     take_method(keys, "macroscopic")
-    assert check({**read_keys("silo"), **keys}, "x").method == Macroscopic(scheme=2, coupling="face")
+    assert check({**read_keys("silo"), **keys}, "x").method == Macroscopic(scheme=3, coupling="face")

@@ -8,10 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import SCENES
-from repaired import CLOSED, DELTA, EVERY, IN_CLOSED_FORM, LEANING, LEANING_ANY, METHODS, limit, pile, steps
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from repaired import CLOSED, DELTA, EVERY, IN_CLOSED_FORM, LEANING, LEANING_ANY, METHODS, leaning, limit, pile, steps
 from states import scene_with
 
-from kinsim import Courant, Kinetic, Macroscopic, Profile, Scene, simulate
+from kinsim import Courant, Kinetic, Macroscopic, Profile, Scene, simulate, step
 from kinsim.clock import Replay
 
 
@@ -54,6 +56,40 @@ def test_a_disturbed_pile_stops_again_and_stays(name: str, zeta: float, boundary
     assert np.abs(run.q[-1][~film]).max() <= (1e-15 if abs(zeta) == DELTA else 0.0)
     assert np.abs(run.h[-1] - run.h[-2]).max() <= (1e-12 if film.any() or abs(zeta) == DELTA else 0.0)
     assert np.abs(run.h[-1] - h).max() <= 1e-6
+
+
+@pytest.mark.parametrize("name", ["closed, first", "closed, second", "fitted, first"])
+@pytest.mark.parametrize("lowest", [0.0, 0.05, 1.0])
+@pytest.mark.parametrize("zeta", [0.8, 1.0, -1.0, 1.2])
+def test_a_pile_that_leans_on_a_steep_chute_stops_again_and_stays(name: str, lowest: float, zeta: float) -> None:
+    """A third of the faces and then all are at the bound where the pile would begin to move downhill.
+
+    At the bound nothing slows down what moves; there, and at toes lower than a jump, the noise decays little by little.
+    """
+    for share in (0.3, 1.0):
+        scene = leaning(zeta, lowest, share, seed=3)
+        h, _ = scene.initial()
+        rng = np.random.default_rng(3)
+        shaken = Profile(h * (1 + 1e-8 * rng.standard_normal(h.size)), 1e-8 * rng.standard_normal(h.size) * (h > 0))
+        run = simulate(replace(scene, heap=shaken), METHODS[name], steps(scene, METHODS[name], 2000, 0.01), 1000)
+        film = (h == 0) & (run.h[-1] < 1e-12)
+        assert np.abs(run.q[-1][~film]).max() <= (0.0 if share < 1.0 and lowest == 1.0 else 1e-8)
+        assert np.abs(run.h[-1] - h).max() <= 1e-6
+
+
+@pytest.mark.parametrize("ratio", [1.1, 2.0, 3.0, 5.0, 30.0])
+@given(heights=st.lists(st.floats(1e-3, 20.0), min_size=2, max_size=2), creep=st.floats(1e-9, 1e-3))
+@settings(max_examples=50, deadline=None)
+def test_what_creeps_downhill_moves_mass_downhill(ratio: float, heights: list[float], creep: float) -> None:
+    """Between cells whose jump is the one that would just move, for sin zeta up to 30 R: they lean, and compress."""
+    low, more = sorted(heights)
+    zeta = 1.2
+    delta = math.atan(math.tan(zeta) / ratio)
+    s, R, beta = math.sin(zeta), math.cos(zeta) * math.tan(delta), 0.4 * math.cos(zeta)
+    scene = scene_with([low, more], zeta=zeta, delta=delta, boundary="wall", dx=(more - low) * beta / (s - R) or 1.0)
+    u = np.array([0.0 if creep < 1e-5 else creep, creep])
+    now = step(scene, Macroscopic(), np.array([low, more]), np.array([low, more]) * u, 1e-9)
+    assert now.flux[0, 1] > 0.0
 
 
 @EVERY

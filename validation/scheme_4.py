@@ -196,7 +196,7 @@ class Promise:
 
 PROMISES = (
     Promise("mass, wet: relative change in 200 steps", drift, 1e-14, {"3": 1e-4}),
-    Promise("mass, dry ground: the same", drift_dry, 1e-14, {}),
+    Promise("mass, dry ground: relative change in 200 steps", drift_dry, 1e-14, {}),
     Promise("least height below 0, dry ground", lowest, 0.0, {"2": 1e-3, "3": 1e-3}),
     Promise("wet pile at 100 % of the bound, zeta = delta/2: change of h and q", at_rest(0.15, 0.0, 0.3), 0.0,
             {"1": 1e-3}),

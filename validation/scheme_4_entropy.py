@@ -44,7 +44,8 @@ def main(chapter: Chapter) -> None:
         chapter.claim(f"{name}: largest production of a cell in a step at held faces, over (dt G)^2 h/2",
                       book.worst_held, high=1.0)  # fmt: skip
         if scene.chute.sin == 0.0:
-            chapter.claim(f"{name}: the same, friction included", book.worst_net, high=1e-9)
+            chapter.claim(f"{name}: largest production of a cell in a step at held faces, friction included, "
+                          "over (dt G)^2 h/2", book.worst_net, high=1e-9)  # fmt: skip
         gap = book.gained - book.free - book.at_held - book.gravity - book.friction + book.outflow
         chapter.claim(f"{name}: what the books leave open, over the entropy", np.abs(gap).max(), high=1e-12)
         if book.sliding is not None:
@@ -85,7 +86,7 @@ def proved(chapter: Chapter, seeds: int) -> None:
         speed = float((np.abs(u) + np.sqrt(2 * scene.beta * h)).max())
         dt = Courant(1.0, 1e9).next_dt(0, 0.0, speed, scene.cells.dx)
         assert dt is not None
-        found = entropy(scene, step(scene, Macroscopic(4), h, h * u, dt), dt)
+        found = entropy(scene, step(scene, Macroscopic(4), h, h * u, dt))
         worst = max(worst, float(found.production[found.free].max()) / (EPS * speed**2))
         cells += int(found.free.sum())
     chapter.claim(f"{cells} cells of random states with dry ground, Courant number 1, nothing held: largest production "
@@ -124,7 +125,7 @@ def follow(scene: Scene, h: Array, q: Array, end: float) -> Book:
     before, first = (h, q), None
     for stepper, dt in steps(scene, Macroscopic(4), h, q, 10**6, 0.9):
         now = step(scene, Macroscopic(4), *before, dt)
-        found = entropy(scene, now, dt)
+        found = entropy(scene, now)
         first = first or float(found.before.sum())
         tiny = 64 * EPS * first
         free = found.free

@@ -45,17 +45,18 @@ def uphill_pull(h: float, above: float, below: float, net: float, reach: float, 
     """The least pull s - R > 0 (`net`) on a cell of a mass that leans downhill, as the faces of a resting one see it.
 
     The faces of the cell show the lower heights, so that the pressure between them is that of the mean of h and `above`
-    (its neighbour uphill), less than that of h; the pull is lessened alike. At a toe lower than the jump `reach` =
-    (s - R) dx/beta that friction balances, all of the pressure of h is at hand, and that of its neighbour `below`.
+    (its neighbour uphill), less than that of h; the pull is lessened alike, as far as theta holds. At a toe lower
+    than the jump `reach` = (s - R) dx/beta that friction balances, all of the pressure of h is at hand, and that of its
+    neighbour `below`; where it moves it is let go slower than the faces give pressure back, with (1 - theta)^2.
     """
-    if not h > 0.0:
+    if not (h > 0.0 and theta > 0.0):
         return net
-    lessened = net * (1.0 - max(h - above, 0.0) / (2.0 * h))
+    share = 1.0 - theta * max(h - above, 0.0) / (2.0 * h)
     if h < reach:
         least = min(above, h)
-        at_hand = net * (0.5 * max(h * h - least * least, 0.0) / (h * reach) + max(1.0 - (below - h) / reach, 0.0))
-        lessened = min(lessened, at_hand)
-    return (net + theta * (lessened - net)) * SHY if theta > 0.0 else net
+        at_hand = 0.5 * max(h * h - least * least, 0.0) / (h * reach) + max(1.0 - (below - h) / reach, 0.0)
+        share = min(share, 1.0 - (1.0 - at_hand) * theta * (2.0 - theta))
+    return net * share * SHY
 
 
 @kernel

@@ -5,11 +5,19 @@ Definition 1, and for the cells i and i + 1 that meet at a face:
 
     e = clamp(h_{i+1} - h_i; (s - R) dx/beta, (s + R) dx/beta)                       the jump that friction can balance,
     w = (h_i |u_i| + h_{i+1} |u_{i+1}|)/(h_i + h_{i+1})                              how fast the face moves,
-    theta = (1 - w (w + sqrt(2 beta max(h_i, h_{i+1})))/(R dx))_+                    the share of e that is held.
+    A = max(R, (4/pi) (|s| - R))                                                     what stops it,
+    theta = (1 - w (w + sqrt(2 beta min(h_i, h_{i+1})))/(A dx))_+                    the share of e that is held.
 
-theta > 0 where friction stops the material of the face before its fastest particle has crossed a cell; no dt is in it,
-so that no time step makes it chatter. The face then shows h_i - theta (-e)_+ to the left and h_{i+1} - theta (e)_+ to
-the right of it, with the velocities of the cells. M(h, v) grows with h, so no more leaves a cell than it has.
+theta > 0 where the material of the face is stopped, by friction or by the heap on which it leans, before its fastest
+particle has crossed a cell; no dt is in it, so that no time step makes it chatter.
+
+A and the lower height h see to it that a leaning pile that moves downhill compresses. Where one of two cells moves,
+|u| << c = sqrt(2 beta h), a mass h |u|/2 moves through their face, and (c/pi) (1 - theta) |e| spills back, since a cell
+sends c^3/(3 pi beta) to either side. For |e| = (|s| - R) dx/beta this is at most (2/pi) h |u| (|s| - R)/A, not more
+than what moves. With R for A it is more on steep ground, and a pile unravels from any noise.
+
+The face then shows h_i - theta (-e)_+ to the left and h_{i+1} - theta (e)_+ to the right of it, with the velocities of
+the cells. M(h, v) grows with h, so no more leaves a cell than it has.
 """
 
 from __future__ import annotations
@@ -38,6 +46,7 @@ def judge_faces(
     A still face is one between resting cells whose jump friction balances. A wall is judged as the face next to it.
     """
     low, high = (s - R) * dx / beta, (s + R) * dx / beta
+    slowing = max(R, (abs(s) - R) * (4.0 / math.pi)) * dx
     last = e.size - 1
     for i in range(e.size):
         a, b = h[i], h[i + 1]
@@ -45,7 +54,7 @@ def judge_faces(
         theta[i] = 0.0
         if R > 0.0:
             w = (a * abs(u[i]) + b * abs(u[i + 1])) / (a + b) if a + b > 0.0 else 0.0
-            theta[i] = max(1.0 - w * (w + math.sqrt(2.0 * beta * max(a, b))) / (R * dx), 0.0)
+            theta[i] = max(1.0 - w * (w + math.sqrt(2.0 * beta * min(a, b))) / slowing, 0.0)
         rest = theta[i] == 1.0 and u[i] == 0.0 and u[i + 1] == 0.0
         still[i] = rest and abs((b - a) - e[i]) <= SAME * (a + b)
     if wall_left and last > 1:

@@ -40,17 +40,21 @@ class Entropy:
     free: np.ndarray
 
 
-def entropy(scene: Scene, now: Step, dt: float) -> Entropy:
+def entropy(scene: Scene, now: Step) -> Entropy:
     """The entropy of a step of first order of scheme 1 or 4 in closed form, with faces that hold or none.
 
     Raises:
-        InputError: The step has other faces, or none of its own.
+        InputError: The step has other faces, or none of its own, or is one of another scene.
     """
+    if now.h.size != scene.cells.count:
+        raise InputError(
+            f"entropy: the step has {now.h.size} cells, the scene {scene.cells.count}; give the step's own scene"
+        )
     if now.states is None:
         raise InputError(
             "entropy: the step has no single flux per face; take scheme 1, or scheme 4 of order 1 that holds"
         )
-    beta, lam = scene.beta, dt / scene.cells.dx
+    beta, dt, lam = scene.beta, now.dt, now.dt / scene.cells.dx
     flux = entropy_flux(now.states.h_left, now.states.u_left, beta)
     flux -= entropy_flux(now.states.h_right, -now.states.u_right, beta)
     outflow = lam * (flux[1:] - flux[:-1])
