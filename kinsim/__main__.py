@@ -1,5 +1,6 @@
 """``python -m kinsim`` and the command ``kinsim``."""
 
+import gc
 import os
 import sys
 
@@ -8,6 +9,7 @@ from .cli import app
 
 def main() -> None:
     """Run the command line; where its output cannot be written it says so, and ends with exit code 1."""
+    gc.set_threshold(50_000)  # at 700 new objects the collector wakes all through the imports, and finds nothing
     try:
         app(prog_name="kinsim")
     except OSError as error:

@@ -90,10 +90,8 @@ def run(
     Exit code: 0 if it went to its end, 1 if it was stopped, 2 if the input is bad, 130 if it was interrupted.
     """
     from .overview import saved_every
-    from .plot import check_picture, plot_density, plot_run
     from .progress import Watched
     from .read import read_dumps
-    from .report import causes_report, run_report
     from .simulate import simulate
     from .store import check_destination
 
@@ -102,6 +100,8 @@ def run(
         check_destination(out)
     for picture in (plot, density):
         if picture:
+            from .plot import check_picture, plot_density, plot_run
+
             check_picture(picture)
     keep_apart(name, out, plot, density)
     dumps = read_dumps(dump or [])
@@ -114,7 +114,7 @@ def run(
             file.clock,
             saved_every(file),
             force=force,
-            dumps=[*dumps, *_final_density(file, dumps)],
+            dumps=[*dumps, *(_final_density(file, dumps) if out or plot else [])],
             causes=causes,
             progress=progress,
         )
@@ -126,6 +126,8 @@ def run(
         plot_density(ran, density, dumps[0].name, cut or ())
     code = EXIT_CODES.get(ran.verdict.kind, 1)
     if not quiet:
+        from .report import causes_report, run_report
+
         run_report(ran, file.method, {"--out": out, "--plot": plot}, Path(name).stem)
         causes_report(ran)
     elif code:

@@ -12,16 +12,39 @@ import os
 import tempfile
 from collections.abc import Callable
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numba
 import platformdirs
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
+from numba.core.registry import CPUDispatcher
+from numba.np import linalg
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 PACKAGE = Path(__file__).parent
+
+
+def _load_without_blas() -> None:
+    """Load numba's array functions now, and let them find no BLAS: it would be all of scipy.linalg.
+
+    numba asks once, for the inner product within a few functions; `np.dot` in somebody's own kernel asks anew.
+    """
+    asked = linalg.ensure_blas
+    linalg.ensure_blas = _no_blas
+    try:
+        import_module("numba.np.arraymath")
+    finally:
+        linalg.ensure_blas = asked
+
+
+def _no_blas() -> None:
+    raise ImportError
+
+
+_load_without_blas()
 
 
 @cache
@@ -83,9 +106,14 @@ def kernel(function: F) -> F:
     return _kept(numba.njit(error_model="numpy"), function)
 
 
+def kernel_inner(function: F) -> F:
+    """A kernel that kernels call: it gets no door for Python, which takes half of the time to compile it."""
+    return _inner(function)
+
+
 def kernel_part(function: F) -> F:
-    """A kernel that is laid into every kernel that calls it: for the insides of loops, where a call would cost."""
-    return _kept(numba.njit(error_model="numpy", forceinline=True), function)
+    """Such a one that is laid into every kernel that calls it: for the insides of loops, where a call would cost."""
+    return _inner(function, forceinline=True)
 
 
 def kernel_relaxed(*flags: Literal["contract", "reassoc", "nsz"]) -> Callable[[F], F]:
@@ -93,7 +121,21 @@ def kernel_relaxed(*flags: Literal["contract", "reassoc", "nsz"]) -> Callable[[F
 
     "reassoc" and "nsz" take sums over a loop in any order, "contract" rounds a product and a sum together.
     """
-    return lambda function: _kept(numba.njit(error_model="numpy", forceinline=True, fastmath=set(flags)), function)
+    return lambda function: _inner(function, forceinline=True, fastmath=set(flags))
+
+
+class _Inner(CPUDispatcher):
+    """A kernel that is compiled for kernels only; where Python calls it, it is the Python function it was."""
+
+    def __call__(self, *given: Any) -> Any:
+        return self.py_func(*given)
+
+
+def _inner(function: F, **options: Any) -> F:
+    doors: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    dispatcher: Any = _kept(numba.njit(error_model="numpy", **doors, **options), function)
+    dispatcher.__class__ = _Inner
+    return dispatcher  # type: ignore[no-any-return]
 
 
 def _kept(njit: Callable[[F], Any], function: F) -> F:

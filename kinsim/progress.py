@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import ExitStack
-from typing import Any
 
 from numba.core import event
 from rich.console import Console, RenderableType
@@ -14,6 +13,8 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn
 
 PATIENCE = 1.0
 """Seconds before a bar shows."""
+
+COMPILING = "compiling kernels, only this once"
 
 
 class Watched:
@@ -23,12 +24,13 @@ class Watched:
         columns = (SpinnerColumn(), TextColumn("{task.description}"), BarColumn(), TaskProgressColumn())
         console = Console(stderr=True)
         off = quiet or not console.is_terminal
+        self._tell_once = off and not quiet
         self._bar = _Late(*columns, TimeRemainingColumn(), console=console, transient=True, disable=off)
         self._task = self._bar.add_task("preparing", total=1.0)
         self._open = ExitStack()
 
     def __enter__(self) -> Watched:
-        self._open.enter_context(event.install_listener("numba:compile", _Compiling(self.say)))
+        self._open.enter_context(event.install_listener("numba:compile", _Compiling(self._compiling)))
         self._bar.wait()
         self._open.enter_context(self._bar)
         return self
@@ -43,9 +45,12 @@ class Watched:
     def __call__(self, share: float) -> None:
         self._bar.update(self._task, completed=share, description="running")
 
-    def say(self, what: str) -> None:
-        """Show what is being done."""
-        self._bar.update(self._task, description=what)
+    def _compiling(self, begins: bool) -> None:
+        """Without a bar it is told in a line, the first time."""
+        self._bar.update(self._task, description=COMPILING if begins else "preparing")
+        if self._tell_once:
+            self._tell_once = False
+            self._bar.console.print(COMPILING)
 
 
 class _Late(Progress):
@@ -62,13 +67,13 @@ class _Late(Progress):
 
 
 class _Compiling(event.Listener):
-    """Says so when numba compiles."""
+    """Says so when numba compiles; what is found on disk is not compiled."""
 
-    def __init__(self, say: Any) -> None:
+    def __init__(self, say: Callable[[bool], None]) -> None:
         self._say = say
 
     def on_start(self, event: object) -> None:
-        self._say("compiling kernels, only this once")
+        self._say(True)
 
     def on_end(self, event: object) -> None:
-        self._say("preparing")
+        self._say(False)

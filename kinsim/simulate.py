@@ -22,7 +22,8 @@ from .sleep import Awake
 from .stepper import make_stepper
 from .watch.causes import Causes
 from .watch.dump import Dump, Recorder
-from .watch.ledger import Ledger, Survey, survey
+from .watch.ledger import Ledger
+from .watch.survey import Survey
 
 Progress = Callable[[float], None]
 
@@ -126,7 +127,7 @@ class _Loop:
         self.times: list[float] = []
         self.states: list[tuple[Array, Array]] = []
         self.still = 0
-        self.fastest = survey(self.h, self.q, scene.beta)[2]
+        self.fastest = Survey.of(self.h, self.q, scene.beta).fastest
         self.first_reach = self.reached = 0.0
         self.outside = ""
         self.stepper = make_stepper(scene, method)
@@ -166,7 +167,7 @@ class _Loop:
         self.ledger.start(self.h, self.q)
         self._save()
         sleepy = self._same_length()
-        look = Survey(*survey(self.h, self.q, beta))
+        look = Survey.of(self.h, self.q, beta)
         while not interrupt.asked:
             speed = awake.begin(self.h, self.q, sleepy if self._unseen() else None)
             reach = awake.at.reach() if awake.at else 0.0
@@ -192,7 +193,7 @@ class _Loop:
             books = awake.advance(self.h, self.q, dt)
             h1, q1 = awake.h1, awake.q1
             if awake.at:
-                look = Survey(*survey(h1, q1, beta))
+                look = Survey.of(h1, q1, beta)
             if look.bad >= 0:
                 place = f"cell {look.bad} (x = {scene.x[look.bad]:.4g})"
                 return self.verdict("non-finite", f"h or q is not finite in {place}; stopped", look.bad)
@@ -292,7 +293,6 @@ class _Loop:
         """Take a step that nobody keeps, so that compiling does not count as running."""
         self.stepper.begin(self.h, self.q)
         self.stepper.advance(1e-3 * self.scene.cells.dx)
-        survey(self.h, self.q, self.scene.beta)
         self.first_reach = self.reached = self.stepper.reach()
 
     def _save(self) -> None:

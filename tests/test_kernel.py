@@ -40,7 +40,7 @@ print(sum(sum(k.stats.cache_misses.values()) for k in kernels), sum(sum(k.stats.
 """
 
 
-def python(code: str, cache: Path | None, path: Path | None = None, **more: str) -> str:
+def python(code: str, cache: Path | None, path: Path | None = None, stream: str = "stdout", **more: str) -> str:
     """Run `code` in a process of its own, and return what it prints."""
     env = {**os.environ, **more}
     env.pop("KINSIM_CACHE_DIR", None)
@@ -50,7 +50,7 @@ def python(code: str, cache: Path | None, path: Path | None = None, **more: str)
         env["PYTHONPATH"] = str(path)
     done = subprocess.run([sys.executable, "-P", "-c", code], env=env, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
-    return done.stdout
+    return str(getattr(done, stream))
 
 
 def test_second_process_compiles_nothing(tmp_path: Path) -> None:
@@ -63,6 +63,16 @@ def test_second_process_compiles_nothing(tmp_path: Path) -> None:
     files = sorted(tmp_path.rglob("*"))
     python(WHOLE, tmp_path)
     assert sorted(tmp_path.rglob("*")) == files  # and the cache does not grow
+
+
+def test_compiling_is_told_in_a_line_and_only_where_there_is_something_to_compile(tmp_path: Path) -> None:
+    """On the error stream, and not in --quiet."""
+    code = "from kinsim.progress import Watched\n"
+    code += "from kinsim.balance.impulse import acceleration\n"
+    code += "with Watched({quiet}): acceleration(1.0, 0.1, 0.2)\n"
+    told = "compiling kernels, only this once"
+    for cache, quiet, said in (("one", False, [told]), ("one", False, []), ("two", True, [])):
+        assert python(code.format(quiet=quiet), tmp_path / cache, stream="stderr").splitlines() == said
 
 
 def copied(where: Path) -> Path:

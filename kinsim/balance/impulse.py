@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel
+from ..kernel import kernel, kernel_inner
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -21,7 +21,7 @@ def acceleration(v: float, s: float, R: float) -> float:
     return s - R if v > 0.0 else s + R
 
 
-@kernel
+@kernel_inner
 def static_acceleration(slope: float, s: float, R: float) -> float:
     """g~ of (21), (22): what holds the slope beta h_x, as far as friction reaches."""
     return min(s + R, max(slope, s - R))

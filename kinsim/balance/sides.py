@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel, kernel_part
+from ..kernel import kernel_inner, kernel_part
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def both_sides(h: float, u: float, beta: float, m1: float, m2: float) -> tuple[f
     return p1, p2, -n1, n2
 
 
-@kernel
+@kernel_inner
 def faces_of_cells(h: Array, u: Array, beta: float, m1: Array, m2: Array, F1: Array, F2: Array) -> None:
     """F of (24): xi > 0 from the cell left of a face and xi < 0 from the one right of it; h, u, m are ghosted."""
     for i in range(F1.size):
@@ -45,7 +45,7 @@ def faces_of_cells(h: Array, u: Array, beta: float, m1: Array, m2: Array, F1: Ar
         F2[i] = p2 + n2
 
 
-@kernel
+@kernel_inner
 def faces_of_states(
     h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, m: Array, F1: Array, F2: Array
 ) -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel
+from ..kernel import kernel, kernel_part
 from ..model.boundary import extend
 from ..scene import Scene
 from .interface import Faces, upwind
@@ -104,8 +104,8 @@ def split(h: Array, q: Array, h_ghosted: Array, u_ghosted: Array) -> None:
 
 def reach(now: Stages, beta: float, balanced: bool) -> float:
     """max(|u| + c) over all that the cells show, and with `balanced` over the face states (25)."""
-    shown = fastest(*now.plus, beta, balanced)
-    return shown if now.minus is now.plus else max(shown, fastest(*now.minus, beta, False))
+    shown: float = fastest(*now.plus, beta, balanced, TOP)
+    return shown if now.minus is now.plus else max(shown, fastest(*now.minus, beta, False, TOP))
 
 
 @kernel
@@ -121,34 +121,33 @@ LANES = 256
 """Cells whose extremes are kept side by side: one running extreme would wait for itself."""
 
 
+TOP = np.empty(LANES)
+"""What `fastest` works in; kernels hold the interpreter's lock, so that one room serves all threads."""
+
+
 @kernel
-def fastest_cell(h: Array, u: Array, beta: float) -> float:
-    """max(|u| + sqrt(2 beta h)) over the cells with mass."""
-    top = np.zeros(LANES)
-    for begin in range(0, h.size, LANES):
-        first, last = np.uint64(begin), np.uint64(min(begin + LANES, h.size))
+def fastest(h: Array, u: Array, beta: float, faces: bool, room: Array) -> float:
+    """max(|u| + sqrt(2 beta h)) over cells with mass and, with `faces`, over face states (25); h, u are ghosted."""
+    for lane in range(room.size):
+        room[lane] = 0.0
+    for begin in range(0, h.size, room.size):
+        first, last = np.uint64(begin), np.uint64(min(begin + room.size, h.size))
         for i in range(first, last):
             k = i - first
             speed = abs(u[i]) + np.sqrt(2.0 * beta * max(h[i], 0.0))
-            top[k] = max(top[k], speed if h[i] > 0.0 else 0.0)
-    return largest(top)
+            room[k] = max(room[k], speed if h[i] > 0.0 else 0.0)
+    top = largest(room)
+    if faces:
+        for i in range(1, h.size):
+            mean = max(0.5 * (h[i - 1] + h[i]), 0.0)
+            top = max(top, max(abs(u[i - 1]), abs(u[i])) + np.sqrt(2.0 * beta * mean))
+    return top
 
 
-@kernel
+@kernel_part
 def largest(top: Array) -> float:
     """The largest entry."""
     most: float = top[0]
     for k in range(top.size):
         most = max(most, top[k])
     return most
-
-
-@kernel
-def fastest(h: Array, u: Array, beta: float, faces: bool) -> float:
-    """max(|u| + sqrt(2 beta h)) over the cells and, with `faces`, over the face states (25); h, u are ghosted."""
-    top = fastest_cell(h, u, beta)
-    if faces:
-        for i in range(1, h.size):
-            mean = max(0.5 * (h[i - 1] + h[i]), 0.0)
-            top = max(top, max(abs(u[i - 1]), abs(u[i])) + np.sqrt(2.0 * beta * mean))
-    return top

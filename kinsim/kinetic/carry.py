@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel, kernel_part
+from ..kernel import kernel, kernel_inner, kernel_part
 from .equilibrium.averages import average_inside, sample_inside
 from .shift import split_shift
 
@@ -21,7 +21,7 @@ Flags = NDArray[np.bool_]
 Spans = NDArray[np.int64]
 
 
-@kernel
+@kernel_inner
 def fill_row(h: float, u: float, beta: float, dxi: float, averaged: bool, rows: Array, row: int) -> int:
     """M(h, xi - u) on the side xi > 0; returns one past the last node at which it is not zero."""
     side = rows[row]
@@ -115,7 +115,8 @@ def carry(
     middle = 3 * half + 1
     old_low, old_high = middle, middle
     ahead, behind, ahead_before, ahead_face, behind_face = 0, 0, 0, 0, 0
-    before, here, after, face, next_face = 2, 4, 0, 6, 8
+    rest = rows.shape[0]  # no number is written out, or each would be compiled for itself
+    after, before, here, face, next_face = rest - 10, rest - 8, rest - 6, rest - 4, rest - 2
     for c in range(nx + 2):
         ahead_after = fill_row(h[c], u[c], beta, dxi, averaged, rows, after)
         behind_after = fill_row(h[c], -u[c], beta, dxi, averaged, rows, after + 1)

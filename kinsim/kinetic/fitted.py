@@ -22,7 +22,7 @@ from ..balance.interface import Faces
 from ..balance.sides import TINY, both_sides, faces_of_cells, faces_of_states
 from ..balance.stages import Stages
 from ..balance.wing import WithoutDensity
-from ..kernel import kernel
+from ..kernel import kernel, kernel_inner
 from ..scene import Scene
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ def gauss_jacobi(count: int) -> tuple[Array, Array]:
     return (1.0 + t) / 2.0, weights / 2.0**2.5
 
 
-@kernel
+@kernel_inner
 def small_sides_fitted(h: Array, u: Array, beta: float, s: Array, W: Array, b: Array, m1: Array, m2: Array) -> None:
     """S1 and S2 of many states, node by node; all arrays but s and W have one shape, and `b` is room."""
     for i in range(h.size):

@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel
+from ..kernel import kernel, kernel_inner
 from .equilibrium.averages import average_inside, sample_inside
 from .shift import split_shift
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-@kernel
+@kernel_inner
 def fill_occupied(h: float, u: float, beta: float, dxi: float, averaged: bool, side: Array) -> tuple[int, int]:
     """M(h, xi - u) at the nodes xi > 0 from the first at which it is not zero to the last; returns these, last + 1."""
     begin, end = average_inside(h, u, beta, dxi, side) if averaged else sample_inside(h, u, beta, dxi, side)
@@ -30,7 +30,7 @@ def fill_occupied(h: float, u: float, beta: float, dxi: float, averaged: bool, s
     return begin, end
 
 
-@kernel
+@kernel_inner
 def sum_side(side: Array, begin: int, end: int, w1: Array, w2: Array) -> tuple[float, float]:
     """First and second moment of what stands from `begin` to below `end` of one side."""
     m1, m2 = 0.0, 0.0
@@ -78,7 +78,7 @@ def sum_cells(
     return (top - 0.5) * dxi if top > 0 else 0.0
 
 
-@kernel
+@kernel_inner
 def fill_held(
     h: float, u: float, of_cell: float, u_of_cell: float, beta: float, dxi: float, averaged: bool, side: Array,
     spare: Array,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel
+from ..kernel import kernel, kernel_inner
 
 Array = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ class ShiftPFC:
         return shift_pfc(f, J, h, dxi, out)
 
 
-@kernel
+@kernel_inner
 def split_shift(J: float, h: float, dxi: float, n: int) -> tuple[int, float]:
     """|J|/h in velocity cells as whole cells and a fraction; n cells when everything leaves, none where it is dry."""
     distance = abs(J) / h / dxi if h > 0.0 else 0.0
@@ -107,7 +107,7 @@ def shift_pfc(f: Array, J: Array, h1: Array, dxi: float, out: Array) -> float:
     return lost * dxi
 
 
-@kernel
+@kernel_inner
 def fraction_ahead(before: float, here: float, after: float, peak: float, theta: float) -> float:
     """What the foremost `theta` of a cell holds by a parabola with the right averages, limited to stay in [0, peak]."""
     rise, fall = after - here, here - before

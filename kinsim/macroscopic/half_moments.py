@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..arc import arc
 from ..balance.sides import TINY, both_sides, faces_of_cells, faces_of_states
-from ..kernel import kernel, kernel_relaxed
+from ..kernel import kernel, kernel_inner, kernel_relaxed
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ def small_side(h: float, speed: float, beta: float) -> tuple[float, float]:
     return max(m1, 0.0), max(m2, 0.0)
 
 
-@kernel
+@kernel_inner
 def small_sides(h: Array, u: Array, beta: float, m1: Array, m2: Array) -> None:
     """The same of many states, all arrays of one shape."""
     for i in range(h.size):

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
-from ..balance.stages import LANES, Array, Stages, largest
-from ..kernel import kernel, kernel_relaxed
+from ..balance.stages import Array, Stages
 from ..kinetic.equilibrium import Status
 from ..kinetic.equilibrium.status import FALLBACKS, MASS_ONLY, TWO_MOMENTS
 from ..kinetic.shift import shift_linear
 from ..kinetic.wing import Density
 from ..scene import Scene
 from ..stepper import Books, Stepper
+from .survey import Survey
 
 COLUMNS = {
     "mass": "mass in the domain",
@@ -45,17 +44,6 @@ DENSITY_COLUMNS = {
 """Further columns of a kinetic run on a velocity grid."""
 
 
-class Survey(NamedTuple):
-    """A look over a state: extremes, and the first cell that is not finite, or -1."""
-
-    h_min: float
-    u_max: float
-    fastest: float
-    q_max: float
-    h_max: float
-    bad: int
-
-
 class Ledger:
     """Notes every step, and makes a row of it when the state is saved."""
 
@@ -73,8 +61,8 @@ class Ledger:
 
     def start(self, h: Array, q: Array) -> None:
         """The row of the initial state."""
-        first = survey(h, q, self._scene.beta)
-        self._h_min, self._u_max = first[0], first[1]
+        first = Survey.of(h, q, self._scene.beta)
+        self._h_min, self._u_max = first.h_min, first.u_max
         self.save(h, q, started=False)
 
     def note(self, look: Survey, courant: float, books: Books, density: Density | None) -> None:
@@ -163,43 +151,3 @@ def departure(density: Density, h: Array, q: Array, dx: float) -> dict[str, floa
         "f_distance": float(np.abs(f - M).sum()) * cell,
         "f_tail": float(f[M == 0.0].sum()) * cell,
     }
-
-
-@kernel_relaxed("reassoc", "nsz")
-def all_finite(h: Array, q: Array) -> bool:
-    """Whether no entry is infinite or NaN: such a number times 0 is not 0."""
-    total = 0.0
-    for i in range(np.uint64(h.size)):
-        total += 0.0 * h[i] + 0.0 * q[i]
-    return total == 0.0
-
-
-@kernel
-def extremes(h: Array, q: Array, beta: float) -> tuple[float, float, float, float, float]:
-    """The least h, the largest |u|, |u| + c, |q| and h of a finite state."""
-    low = np.full(LANES, np.inf)
-    deep, much, quick, far = np.zeros(LANES), np.zeros(LANES), np.zeros(LANES), np.zeros(LANES)
-    for begin in range(0, h.size, LANES):
-        first, last = np.uint64(begin), np.uint64(min(begin + LANES, h.size))
-        for i in range(first, last):
-            k = i - first
-            low[k] = min(low[k], h[i])
-            deep[k] = max(deep[k], h[i])
-            much[k] = max(much[k], abs(q[i]))
-        for i in range(first, last):
-            k = i - first
-            u = abs(q[i]) / h[i] if h[i] > 0.0 else 0.0
-            quick[k] = max(quick[k], u)
-            far[k] = max(far[k], u + np.sqrt(2.0 * beta * max(h[i], 0.0)))
-    return -largest(-low), largest(quick), largest(far), largest(much), largest(deep)
-
-
-@kernel
-def survey(h: Array, q: Array, beta: float) -> tuple[float, float, float, float, float, int]:
-    """The entries of a `Survey` of the state (h, q), each of shape (nx,)."""
-    if not all_finite(h, q):
-        for i in range(h.size):
-            if not (np.isfinite(h[i]) and np.isfinite(q[i])):
-                return np.inf, 0.0, 0.0, 0.0, 0.0, i
-    h_min, u_max, fastest, q_max, h_max = extremes(h, q, beta)
-    return h_min, u_max, fastest, q_max, h_max, -1

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arc import arc
-from ...kernel import kernel
+from ...kernel import kernel, kernel_inner
 from ..velocity import Grid
 from .rows import Array, put
 from .status import Status
@@ -61,7 +61,7 @@ def sampled(h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: 
         put(side, rows[i], False)
 
 
-@kernel
+@kernel_inner
 def sample_side(h: float, u: float, beta: float, dxi: float, side: Array) -> None:
     """M(h, xi - u) at the nodes xi > 0."""
     square = 2.0 * beta * max(h, 0.0)
@@ -71,7 +71,7 @@ def sample_side(h: float, u: float, beta: float, dxi: float, side: Array) -> Non
         side[k] = scale * math.sqrt(max(square - w * w, 0.0))
 
 
-@kernel
+@kernel_inner
 def sample_inside(h: float, u: float, beta: float, dxi: float, side: Array) -> tuple[int, int]:
     """The same at nodes that cover the support; returns the first and one past the last, and leaves out the others."""
     square = 2.0 * beta * max(h, 0.0)
@@ -100,7 +100,7 @@ def cell_average(
         put(side, rows[i], False)
 
 
-@kernel
+@kernel_inner
 def average_side(h: float, u: float, beta: float, dxi: float, side: Array) -> None:
     """Averages over the cells xi > 0: h/(pi dxi) [G(t)] between the edges, t = (xi - u)/c clipped to [-1, 1]."""
     begin, end = average_inside(h, u, beta, dxi, side)
@@ -108,7 +108,7 @@ def average_side(h: float, u: float, beta: float, dxi: float, side: Array) -> No
     side[end:] = 0.0
 
 
-@kernel
+@kernel_inner
 def average_inside(h: float, u: float, beta: float, dxi: float, side: Array) -> tuple[int, int]:
     """The same from the first cell that M reaches to the last; returns these, last + 1, and leaves out the others."""
     half = side.size

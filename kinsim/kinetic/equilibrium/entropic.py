@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...kernel import kernel
+from ...kernel import kernel, kernel_inner
 from ..velocity import Grid
 from .few_nodes import few_nodes
 from .rows import Array, put
@@ -70,7 +70,7 @@ def entropic(
         iterations[i], residual[i], fallback[i] = tries, defect, fell
 
 
-@kernel
+@kernel_inner
 def dual(kappa: float, b: float, u: float, c: float, dxi: float, half: int) -> tuple[float, ...]:
     """Two first and three second derivatives of the dual value at f_j = c sqrt(p_j)/(pi beta).
 
@@ -93,7 +93,7 @@ def dual(kappa: float, b: float, u: float, c: float, dxi: float, half: int) -> t
     return g0, g1, h00, h01, h11
 
 
-@kernel
+@kernel_inner
 def entropic_sides(h: float, u: float, beta: float, dxi: float, P: Array, N: Array) -> tuple[int, float, int]:
     """The two sides of the minimiser, u >= 0, with iterations, residual and fall-back."""
     half = P.size
@@ -134,7 +134,7 @@ def entropic_sides(h: float, u: float, beta: float, dxi: float, P: Array, N: Arr
     return tries, polish(h, u, c, dxi, P, N), CONVERGED
 
 
-@kernel
+@kernel_inner
 def polish(h: float, u: float, c: float, dxi: float, P: Array, N: Array) -> float:
     """Multiply by 1 + a + b y so that mass and momentum hold to rounding; returns what is left of their defect."""
     weight = dxi / h
@@ -158,7 +158,7 @@ def polish(h: float, u: float, c: float, dxi: float, P: Array, N: Array) -> floa
     return defect
 
 
-@kernel
+@kernel_inner
 def two_nodes_are_optimal(h: float, u: float, beta: float, dxi: float, half: int) -> bool:
     """Whether the pair of nodes around u with the right mass and momentum satisfies the conditions of the minimum.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...kernel import kernel
+from ...kernel import kernel, kernel_inner
 from ..velocity import Grid
 from .averages import average_side
 from .few_nodes import few_nodes
@@ -59,7 +59,7 @@ def matched(
         iterations[i], residual[i], fallback[i] = tries, defect, fell
 
 
-@kernel
+@kernel_inner
 def matched_sides(h: float, u: float, beta: float, dxi: float, P: Array, N: Array) -> tuple[int, float, int]:
     """The two sides of the matched density, u >= 0, with iterations, residual and fall-back."""
     average_side(h, u, beta, dxi, P)

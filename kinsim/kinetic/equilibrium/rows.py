@@ -10,12 +10,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ...kernel import kernel
+from ...kernel import kernel_inner
 
 Array = NDArray[np.float64]
 
 
-@kernel
+@kernel_inner
 def put(side: Array, row: Array, positive: bool) -> None:
     """Write a side into its half of an ascending row."""
     half = side.size
