@@ -1,5 +1,6 @@
 from . import exact as exact
 from . import printed as printed
+from .checkpoint import Checkpoint as Checkpoint
 from .clock import Courant as Courant
 from .clock import Fixed as Fixed
 from .errors import InputError as InputError
@@ -22,6 +23,7 @@ from .model.heap import Profile as Profile
 from .model.heap import Sine as Sine
 from .model.heap import Table as Table
 from .read import load_scene as load_scene
+from .resume import resume as resume
 from .run import Run as Run
 from .run import Verdict as Verdict
 from .scene import Scene as Scene

@@ -63,7 +63,9 @@ def rooms() -> None:
 @app.command()
 @told()
 def run(
-    name: SceneName,
+    name: Annotated[
+        str | None, typer.Argument(metavar="NAME|FILE", help="A built-in scene (see: kinsim scenes), or a scene file.")
+    ] = None,
     method: Annotated[MethodKind | None, typer.Option(help="Take this wing instead of the one in the file.")] = None,
     settings: Settings = None,
     out: Annotated[Path | None, typer.Option(metavar="RUN.NC", help="Write the run to this netCDF file.")] = None,
@@ -82,12 +84,20 @@ def run(
     causes: Annotated[
         bool, typer.Option("--causes", help="Book what each stage did to mass, momentum, energy and entropy.")
     ] = False,
+    checkpoint: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Put the run down here now and then, and on Ctrl-C.")
+    ] = None,
+    every: Annotated[float, typer.Option(metavar="SECONDS", help="From one checkpoint to the next.")] = 60.0,
+    resume: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Go on with a run that was put down, bit for bit.")
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")] = False,
     force: Force = False,
 ) -> None:
     """Run a scene, and say how it ended.
 
-    Exit code: 0 if it went to its end, 1 if it was stopped, 2 if the input is bad, 130 if it was interrupted.
+    Exit code: 0 if it went to its end, 1 if it was stopped, 2 if the input is bad, 130 if it was interrupted. A
+    checkpoint is removed when the run went to its end and all its files are written.
     """
     from .overview import saved_every
     from .progress import Watched
@@ -95,7 +105,10 @@ def run(
     from .simulate import simulate
     from .store import check_destination
 
-    file = read_scene(name, settings, method)
+    if resume and (name or method or settings or dump or causes or force or checkpoint):
+        raise InputError(f"--resume goes on with what {resume} says; beside it give --out, --plot and --density alone")
+    if not (name or resume):
+        raise InputError("run: name a scene (kinsim scenes lists them), or a checkpoint with --resume")
     if out:
         check_destination(out)
     for picture in (plot, density):
@@ -103,21 +116,35 @@ def run(
             from .plot import check_picture, plot_density, plot_run
 
             check_picture(picture)
-    keep_apart(name, out, plot, density)
-    dumps = read_dumps(dump or [])
+    keep_apart(name, out, plot, density, checkpoint, resume)
+    if resume:
+        from .resume import read_request
+        from .resume import resume as go_on
+
+        request = read_request(resume)
+        asked, dumps = request["method"], request["dumps"]
+    else:
+        from .checkpoint import Checkpoint
+
+        file = read_scene(str(name), settings, method)
+        asked, dumps = file.method, read_dumps(dump or [])
     if density and not dumps:
         raise InputError("--density draws a dump; ask for one, for example --dump every=1000")
     with Watched(quiet) as progress:
-        ran = simulate(
-            file.scene,
-            file.method,
-            file.clock,
-            saved_every(file),
-            force=force,
-            dumps=[*dumps, *(_final_density(file, dumps) if out or plot else [])],
-            causes=causes,
-            progress=progress,
-        )
+        if resume:
+            ran = go_on(resume, progress=progress)
+        else:
+            ran = simulate(
+                file.scene,
+                file.method,
+                file.clock,
+                saved_every(file),
+                force=force,
+                dumps=[*dumps, *(_final_density(file, dumps) if out or plot or checkpoint else [])],
+                causes=causes,
+                checkpoint=Checkpoint(str(checkpoint), every) if checkpoint else None,
+                progress=progress,
+            )
     if out:
         ran.to_netcdf(out)
     if plot:
@@ -125,10 +152,15 @@ def run(
     if density:
         plot_density(ran, density, dumps[0].name, cut or ())
     code = EXIT_CODES.get(ran.verdict.kind, 1)
+    kept = checkpoint or resume
+    if kept and ran.verdict.kind == "interrupted":
+        typer.echo(f"put down; go on with: kinsim run --resume {kept}", err=True)
+    elif kept and code == 0:
+        kept.unlink(missing_ok=True)
     if not quiet:
         from .report import causes_report, run_report
 
-        run_report(ran, file.method, {"--out": out, "--plot": plot}, Path(name).stem)
+        run_report(ran, asked, {"--out": out, "--plot": plot}, Path(name or "run").stem)
         causes_report(ran)
     elif code:
         complain(str(ran.verdict), code)

@@ -150,12 +150,9 @@ class Run:
 
     def provenance(self) -> dict[str, Any]:
         """Scene, method, clock and versions as text, with a hash that names the computation."""
-        described = {
-            "scene": describe(Scene, self.scene),
-            "method": describe(type(self.method), self.method),
-            "clock": describe(type(self.clock), self.clock),
-            "kinsim_version": version("kinsim"),
-        }
+        parts = description(self.scene, self.method, self.clock)
+        described = {name: json.dumps(keys, sort_keys=True) for name, keys in parts.items()}
+        described["kinsim_version"] = version("kinsim")
         packages = ", ".join(f"{name} {version(name)}" for name in ("numpy", "numba", "xarray", "h5netcdf"))
         versions = f"kinsim {described['kinsim_version']}, Python {platform.python_version()}, {packages}"
         digest = hashlib.sha256(
@@ -172,6 +169,12 @@ class Run:
             "wall_time_seconds": self.wall_time,
             "Conventions": "CF-1.11",
         }
+
+
+def description(scene: Scene, method: Kinetic | Macroscopic, clock: Clock) -> dict[str, Any]:
+    """The three as plain keys and values."""
+    parts = {"scene": scene, "method": method, "clock": clock}
+    return {name: TypeAdapter(type(thing)).dump_python(thing, mode="json") for name, thing in parts.items()}
 
 
 def describe(kind: Any, thing: Any) -> str:

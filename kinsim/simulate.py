@@ -5,18 +5,22 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from importlib.metadata import version
+from typing import Any
 
 import numpy as np
+from pydantic import TypeAdapter
 
 from .balance.scheme4 import Held
 from .balance.stages import Array
+from .checkpoint import Checkpoint, Keeper, Kept, Nowhere, part, under
 from .clock import AnyClock, Courant, Fixed, Replay
 from .errors import InputError
 from .interrupt import Deferred
 from .kinetic.velocity import Uniform, Window
 from .kinetic.wing import Density
 from .method import Kinetic, Macroscopic
-from .run import Run, Verdict, VerdictKind
+from .run import Run, Verdict, VerdictKind, description
 from .scene import Scene
 from .sleep import Awake
 from .stepper import make_stepper
@@ -47,6 +51,7 @@ def simulate(
     force: bool = False,
     dumps: Sequence[Dump] = (),
     causes: bool = False,
+    checkpoint: Checkpoint | None = None,
     progress: Progress | None = None,
 ) -> Run:
     """Run a scene.
@@ -59,6 +64,7 @@ def simulate(
         force: Run although the CFL bound (28) is broken; the verdict says so.
         dumps: Densities to keep; kinetic wing on a velocity grid only.
         causes: Keep the moment ledger, too: what each stage did to mass, momentum, energy and entropy; grid only.
+        checkpoint: Where the run is put down now and then, and on Ctrl-C and SIGTERM; `resume` goes on with it.
         progress: Called now and then with the share that is done.
 
     Returns:
@@ -70,9 +76,17 @@ def simulate(
     _check(scene, method, clock, save_every)
     if isinstance(method, Kinetic) and method.unbounded:
         method = method.within(find_bound(scene, method, clock, force))
-    loop = _Loop(scene, method, clock, save_every, force)
+    loop = Loop(scene, method, clock, save_every, force)
     loop.watch(dumps, causes)
-    began = time.perf_counter()
+    if checkpoint:
+        loop.keeper = Keeper(checkpoint, loop.about())
+    loop.start()
+    return go(loop, progress)
+
+
+def go(loop: Loop, progress: Progress | None) -> Run:
+    """Step to the end, or until somebody stops it."""
+    began = time.perf_counter() - loop.spent
     try:
         with Deferred() as interrupt:
             verdict = loop.run(progress, interrupt)
@@ -102,7 +116,8 @@ def find_bound(scene: Scene, method: Kinetic, clock: AnyClock, force: bool = Fal
 
     Where the twin breaks the CFL bound it ends, unless forced: so does then the run itself, on its own grid.
     """
-    twin = _Loop(scene, method.twin, clock, save_every=2**62, force=force)
+    twin = Loop(scene, method.twin, clock, save_every=2**62, force=force)
+    twin.start()
     try:
         verdict = twin.run(None, Deferred())
     except InputError:  # a first step over the bound; the grid counts its nodes, and judges by itself
@@ -113,7 +128,7 @@ def find_bound(scene: Scene, method: Kinetic, clock: AnyClock, force: bool = Fal
     return 1.05 * largest if 0.0 < largest < math.inf else 1.0
 
 
-class _Loop:
+class Loop:
     """The moving parts of a run."""
 
     def __init__(
@@ -127,6 +142,7 @@ class _Loop:
         self.times: list[float] = []
         self.states: list[tuple[Array, Array]] = []
         self.still = 0
+        self.spent = 0.0
         self.fastest = Survey.of(self.h, self.q, scene.beta).fastest
         self.first_reach = self.reached = 0.0
         self.outside = ""
@@ -135,6 +151,7 @@ class _Loop:
         self.ledger = Ledger(scene, self.stepper)
         self.recorders: list[Recorder] = []
         self.causes: Causes | None = None
+        self.keeper: Keeper | Nowhere = Nowhere()
         self._warm_up()
 
     def watch(self, dumps: Sequence[Dump], causes: bool) -> None:
@@ -160,12 +177,16 @@ class _Loop:
         if causes:
             self.causes = Causes(self.scene, self.stepper, density)
 
+    def start(self) -> None:
+        """Keep the initial state."""
+        self.ledger.start(self.h, self.q)
+        self._save()
+
     def run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
         """Step until the clock or a fault ends it."""
         scene, clock, stepper, awake = self.scene, self.clock, self.stepper, self.awake
         dx, beta = scene.cells.dx, scene.beta
-        self.ledger.start(self.h, self.q)
-        self._save()
+        began = time.perf_counter() - self.spent
         sleepy = self._same_length()
         look = Survey.of(self.h, self.q, beta)
         while not interrupt.asked:
@@ -210,8 +231,11 @@ class _Loop:
                 self._save()
             if settled and not last:
                 return self.verdict("at-rest", "came to rest")
+            self.spent = time.perf_counter() - began
+            self.keeper.after_step(self.kept)
             if progress and self.step % 16 == 0:
                 progress(clock.progress(self.step, self.t))
+        self.keeper.put_down(self.kept())
         return self.verdict("interrupted", "interrupted")
 
     def verdict(self, kind: VerdictKind, message: str, cell: int | None = None) -> Verdict:
@@ -228,7 +252,51 @@ class _Loop:
         if ledger.least_density < 0:
             why = ", as balanced faces allow" if self.stepper.scheme.uses_balanced else ""
             notes.append(f"f fell to {ledger.least_density:.3g} somewhere{why}")
+        if self.keeper.trouble:
+            notes.append(self.keeper.trouble)
         return Verdict(kind, "; ".join(notes), self.step, cell)
+
+    def about(self) -> dict[str, Any]:
+        """What is run, and what is asked of it."""
+        dumps = [TypeAdapter(Dump).dump_python(recorder.dump, mode="json") for recorder in self.recorders]
+        return {
+            "version": version("kinsim"), **description(self.scene, self.method, self.clock), "dumps": dumps,
+            "save_every": int(self.save_every), "force": self.force, "causes": self.causes is not None,
+        }  # fmt: skip
+
+    def kept(self) -> Kept:
+        """All that the next step depends on, and all that was kept so far."""
+        numbers = (self.step, self.t, self.still, self.fastest, self.first_reach, self.reached, self.spent)
+        own = {
+            "numbers": np.array(numbers, dtype=float), "outside": np.array(self.outside),
+            "state": np.array([self.h, self.q]),
+            "dts": np.array(self.dts), "times": np.array(self.times), "states": np.array(self.states),
+        }  # fmt: skip
+        kept = under("loop", own) | under("awake", self.awake.kept()) | under("ledger", self.ledger.kept())
+        if self.stepper.density:
+            kept |= under("density", self.stepper.density.kept())
+        if self.causes:
+            kept |= under("causes", self.causes.kept())
+        for recorder in self.recorders:
+            kept |= under(f"dump {recorder.dump.name}", recorder.kept())
+        return kept
+
+    def restore(self, kept: Kept) -> None:
+        """Stand where `kept` was told."""
+        own = part("loop", kept)
+        step, self.t, still, self.fastest, self.first_reach, self.reached, self.spent = own["numbers"].tolist()
+        self.step, self.still, self.outside = int(step), int(still), str(own["outside"])
+        self.h[:], self.q[:] = own["state"]
+        self.dts, self.times = own["dts"].tolist(), own["times"].tolist()
+        self.states = [(h, q) for h, q in own["states"]]
+        self.awake.restore(part("awake", kept))
+        self.ledger.restore(part("ledger", kept))
+        if self.stepper.density:
+            self.stepper.density.restore(part("density", kept))
+        if self.causes:
+            self.causes.restore(part("causes", kept))
+        for recorder in self.recorders:
+            recorder.restore(part(f"dump {recorder.dump.name}", kept))
 
     def finish(self, verdict: Verdict, wall_time: float) -> Run:
         """The run as a value; the last good state is its last row."""

@@ -10,7 +10,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from .balance.stages import Array
+from .checkpoint import Kept
 from .kernel import kernel
 from .kinetic.velocity import Uniform, Window
 from .method import Kinetic, Macroscopic
@@ -96,6 +99,17 @@ class Awake:
             self.h1[:], self.q1[:] = h, q
         books = Books(0.0, 0.0, 0.0, 0.0) if self.at is None else self._step(self.at, h, q, dt)
         return books._replace(inflow_left=dt * self._entering[0], inflow_right=dt * self._entering[1])
+
+    def kept(self) -> Kept:
+        """What the next step depends on."""
+        return {"awake": np.array([*self._awake, self.cell_steps]), "numbers": np.array([self._dt, *self._entering])}
+
+    def restore(self, kept: Kept) -> None:
+        """Go on from there."""
+        low, high, self.cell_steps = kept["awake"].tolist()
+        self._awake = (low, high)
+        self._dt, *self._entering = kept["numbers"].tolist()
+        self.at = None
 
     def _step(self, at: Stepper, h: Array, q: Array, dt: float) -> Books:
         """Step the cells that are awake, and see which of them are so after it."""

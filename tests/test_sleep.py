@@ -10,7 +10,7 @@ from repaired import METHODS
 from states import scene_with
 
 from kinsim import Fixed, Kinetic, Macroscopic, Uniform, simulate, sleep
-from kinsim.simulate import _Loop
+from kinsim.simulate import Loop
 
 CASES = {name: method for name, method in METHODS.items() if not name.startswith("matched")}
 CASES |= {"scheme 1": Macroscopic(1), "scheme 1, grid": Kinetic(1, Uniform(16))}
@@ -43,13 +43,15 @@ def test_a_run_with_sleepers_is_the_run_without(name: str, boundary: str, monkey
 def test_cells_sleep(name: str) -> None:
     """Not all cells are computed, though scheme 1 rests on dry ground only; a mass at rest costs the saved steps."""
     method = CASES[name] if isinstance(CASES[name], Macroscopic) else CASES[name].within(2.0)
-    loop = _Loop(heaps("wall"), method, Fixed(0.01, 200), 50, False)
+    loop = Loop(heaps("wall"), method, Fixed(0.01, 200), 50, False)
+    loop.start()
     loop.run(None, type("Never", (), {"asked": False})())
     assert loop.awake.cell_steps < 200 * 320 * (0.75 if method.scheme == 4 else 0.98)
     if method.scheme == 4:
         x = (np.arange(320) + 0.5) / 320
         still = scene_with(np.maximum(0.2 - 8 * np.abs(x - 0.7), 0.0), delta=0.5, boundary="wall")
-        loop = _Loop(still, method, Fixed(0.01, 200), 50, False)
+        loop = Loop(still, method, Fixed(0.01, 200), 50, False)
+        loop.start()
         loop.run(None, type("Never", (), {"asked": False})())
         assert loop.awake.cell_steps <= 320 * (200 // 50 + 2)
 

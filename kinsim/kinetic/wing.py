@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from ..balance.interface import Faces
 from ..balance.schemes import Scheme
 from ..balance.stages import Array, Stages, reach
+from ..checkpoint import Kept
 from ..scene import Scene
 from .equilibrium import Equilibrium, Status
 from .equilibrium.averages import mass_outside
@@ -81,6 +82,15 @@ class Density:
     def f(self) -> Array:
         """f after the force, shape (nx, n)."""
         return self._f
+
+    def kept(self) -> Kept:
+        """The window as it stands; all else is made anew in a step."""
+        return {"count": np.array(self.grid.count), "room": np.array(self._room)}
+
+    def restore(self, kept: Kept) -> None:
+        """Take that window."""
+        self._allocate(Grid(int(kept["count"]), self.grid.dxi))
+        self._room = float(kept["room"])
 
     def _widen(self, grid: Grid) -> None:
         M, B, pad = self.M, self.B, (grid.count - self.grid.count) // 2

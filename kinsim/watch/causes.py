@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..balance.stages import Array, Stages
+from ..checkpoint import Kept
 from ..kernel import kernel
 from ..kinetic.velocity import Grid
 from ..kinetic.wing import Density
@@ -78,6 +79,20 @@ class Causes:
         now = self.of_state(h, q)
         total = now - self._first if self._first is not None else np.zeros_like(now)
         self._saved.append((t, self._last.copy(), self._sum.copy(), total))
+
+    def kept(self) -> Kept:
+        """The books so far."""
+        t, step, summed, total = (np.array(column) for column in zip(*self._saved, strict=True))
+        first = np.empty((0, len(QUANTITIES))) if self._first is None else self._first[None]
+        return {"last": self._last, "sum": self._sum.copy(), "first": first,
+                "t": t, "steps": step, "sums": summed, "totals": total}  # fmt: skip
+
+    def restore(self, kept: Kept) -> None:
+        """Go on from there."""
+        self._last, self._sum = kept["last"], kept["sum"]
+        self._first = kept["first"][0] if kept["first"].size else None
+        columns = (kept["t"].tolist(), kept["steps"], kept["sums"], kept["totals"])
+        self._saved = list(zip(*columns, strict=True))
 
     def result(self) -> xarray.Dataset:
         """`step`: the last step before each saved time; `sum`: all steps so far; `total`: change of the state."""

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from ..balance.stages import Array, Stages
+from ..checkpoint import Kept
 from ..errors import InputError
 from ..kinetic.velocity import Grid
 from ..value import Number, Whole, value
@@ -89,7 +90,18 @@ class Recorder:
         stage, density = self.dump.stage, self._density
         self._times.append(before if stage in ("equilibrium", "held") else after)
         self._rows.append(SHOWN[stage](density, now)[self._cells].copy())
-        self._offsets.append(density.offset[self._cells] if stage == "force" else np.zeros(self._x.size))
+        self._offsets.append(density.offset[self._cells].copy() if stage == "force" else np.zeros(self._x.size))
+
+    def kept(self) -> Kept:
+        """The rows so far."""
+        rows = {f"row {at}": row for at, row in enumerate(self._rows)}
+        offsets = np.array(self._offsets).reshape(-1, self._x.size)
+        return {"times": np.array(self._times), "offsets": offsets, "last": np.array(self._last), **rows}
+
+    def restore(self, kept: Kept) -> None:
+        """Go on from there."""
+        self._times, self._offsets, self._last = kept["times"].tolist(), list(kept["offsets"]), int(kept["last"])
+        self._rows = [kept[f"row {at}"] for at in range(len(self._times))]
 
     def result(self) -> xarray.DataArray:
         """What was kept, with axes (t, x, xi); where the force moved the nodes, `offset` (t, x) says by how much."""

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from ..balance.stages import Array, Stages
+from ..checkpoint import Kept
 from ..kinetic.equilibrium import Status
 from ..kinetic.equilibrium.status import FALLBACKS, MASS_ONLY, TWO_MOMENTS
 from ..kinetic.shift import shift_linear
@@ -102,6 +103,26 @@ class Ledger:
     def columns(self) -> dict[str, Array]:
         """The ledger, each column of shape (nt,)."""
         return {name: np.array([row[name] for row in self._rows]) for name in self._rows[0]}
+
+    def kept(self) -> Kept:
+        """The rows so far, and what was noted since the last one."""
+        names = list(self._rows[0])
+        since = (self.least_height, self.least_density, self.worst_courant, self._h_min, self._f_min, self._u_max,
+                 self._courant, self._residual, self._iterations)  # fmt: skip
+        return {
+            "names": np.array(names), "rows": np.array([[row[name] for name in names] for row in self._rows]),
+            "booked": np.array(self._booked), "fallbacks": self._fallbacks.copy(),
+            "since": np.array(since, dtype=float),
+        }  # fmt: skip
+
+    def restore(self, kept: Kept) -> None:
+        """Go on from there."""
+        names = kept["names"].tolist()
+        self._rows = [dict(zip(names, row, strict=True)) for row in kept["rows"].tolist()]
+        self._booked, self._fallbacks = kept["booked"].tolist(), kept["fallbacks"]
+        (self.least_height, self.least_density, self.worst_courant, self._h_min, self._f_min, self._u_max,
+         self._courant, self._residual, iterations) = kept["since"].tolist()  # fmt: skip
+        self._iterations = int(iterations)
 
     def _note_status(self, status: Status, rows: slice) -> None:
         self._fallbacks += np.bincount(status.fallback[rows], minlength=len(FALLBACKS))
