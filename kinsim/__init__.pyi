@@ -28,6 +28,7 @@ from .run import Run as Run
 from .run import Verdict as Verdict
 from .scene import Scene as Scene
 from .simulate import simulate as simulate
+from .stability.atlas import atlas as atlas
 from .step import Step as Step
 from .step import step as step
 from .studies.study import study as study

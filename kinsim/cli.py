@@ -10,6 +10,7 @@ import typer
 from .commands import sweep
 from .errors import InputError
 from .shell import EXIT_CODES, Force, MethodKind, SceneName, Settings, complain, keep_apart, read_scene, told
+from .stability.command import atlas
 
 if TYPE_CHECKING:
     from .read import SceneFile
@@ -258,7 +259,7 @@ def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file
         raise InputError(f"{name}: clock: the first step breaks the CFL bound (28); take a smaller one, or force it")
 
 
-for command in (sweep,):
+for command in (sweep, atlas):
     app.command()(told()(command))
 
 

@@ -50,12 +50,16 @@ class Fixed:
 class Courant:
     """Steps with speed dt/dx = `number`, speed as in (28); the last one lands on the time `end`.
 
-    With `stop_at_rest` the run ends before, if the mass came to rest.
+    On ground steeper than the friction angle a step is no longer than the one in which a grain slides from rest through
+    `number` cells, however slow all still is.
+    With `stop_at_rest` the run ends before, if the mass came to rest; after `most` steps it is stopped, so that it ends
+    even if velocities grow without bound.
     """
 
     number: Positive
     end: Positive
     stop_at_rest: bool = False
+    most: Annotated[Whole, Field(ge=1)] = 10_000_000
     kind: Literal["courant"] = kind("courant")
 
     def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:

@@ -116,6 +116,24 @@ def change(keys: dict[str, Any], settings: Sequence[str]) -> None:
         put(keys, name, toml_value(text), f"--set {setting}")
 
 
+def read_method(settings: Sequence[str]) -> Kinetic | Macroscopic:
+    """The method that settings such as ``method.scheme=1`` make of scheme 4 in closed form.
+
+    Raises:
+        InputError: One is no setting of a method.
+    """
+    keys: dict[str, Any] = {"method": {"kind": "macroscopic"}}
+    change(keys, settings)
+    if set(keys) != {"method"}:
+        other = next(name for name in keys if name != "method")
+        raise InputError(f"--set {other}: there is no scene here; set keys of the method, such as method.scheme=1")
+    try:
+        method: Kinetic | Macroscopic = TypeAdapter(Method).validate_python(keys["method"])
+    except ValidationError as error:
+        raise InputError(one_line(error, "--set method", Kinetic, separator=": ")) from None
+    return method
+
+
 def put(keys: dict[str, Any], name: str, given: Any, place: str) -> None:
     """Put a value at a dotted name into the keys of a scene file; `place` names the request."""
     *tables, last = (part.strip() for part in name.split("."))

@@ -180,6 +180,30 @@ SHOWN = 40
 """Members that a table names; the file has all of them."""
 
 
+def atlas_report(found: xarray.Dataset, *files: Path | None) -> None:
+    """How many points of each axis came to what, and those that are neither exact nor stable."""
+    from .stability.judge import CLASSES
+
+    axes = [" over ".join(filter(None, pair)) for pair in zip(*(found[name].to_numpy() for name in ("across", "axis")),
+                                                              strict=True)]  # fmt: skip
+    words = found["class"].to_numpy().tolist()
+    table = plain_table("axis", *CLASSES)
+    for name in dict.fromkeys(axes):
+        here = [word for axis, word in zip(axes, words, strict=True) if axis == name]
+        table.add_row(name, *(str(here.count(word) or "") for word in CLASSES))
+    console = Console()
+    console.print(table)
+    firsts = {(axis, word): number for number, (axis, word) in reversed([*enumerate(zip(axes, words, strict=True))])}
+    for (axis, word), number in firsts.items():
+        if word in ("refused", "non-finite"):
+            at = found.isel(point=number)
+            value = ", ".join(filter(None, (str(at["value"].item()), str(at["across_value"].item()))))
+            line = f"{word} along {axis}, for example at {value}: {str(at['verdict'].item()).split(';')[0]}"
+            console.print(escape(line), highlight=False, soft_wrap=True)
+    for path in filter(None, files):
+        console.print(f"written to {escape(str(path))}", highlight=False, soft_wrap=True)
+
+
 def study_report(found: xarray.Dataset, out: Path) -> None:
     """A line for each member of a study, and where all of it is."""
     dims = [str(dim) for dim in found["verdict"].dims]

@@ -25,7 +25,9 @@ from .watch.ledger import COLUMNS, DENSITY_COLUMNS
 if TYPE_CHECKING:
     import xarray
 
-VerdictKind = Literal["finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "interrupted"]
+VerdictKind = Literal[
+    "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "too-many-steps", "interrupted"
+]  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -33,7 +35,8 @@ class Verdict:
     """How a run ended; `str` says it in human words.
 
     Attributes:
-        kind: "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small" or "interrupted".
+        kind: "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "too-many-steps" or
+            "interrupted".
         message: One sentence.
         step: Number of the last step kept.
         cell: The cell at fault, if one is.

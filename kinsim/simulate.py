@@ -145,6 +145,7 @@ class Loop:
         self.spent = 0.0
         self.fastest = Survey.of(self.h, self.q, scene.beta).fastest
         self.first_reach = self.reached = 0.0
+        self.falling = _falling(scene, clock)
         self.outside = ""
         self.stepper = make_stepper(scene, method)
         self.awake = Awake(scene, method, self.stepper)
@@ -182,6 +183,7 @@ class Loop:
         self.ledger.start(self.h, self.q)
         self._save()
 
+    @np.errstate(all="ignore")  # a number that is none stops the run, with a verdict
     def run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
         """Step until the clock or a fault ends it."""
         scene, clock, stepper, awake = self.scene, self.clock, self.stepper, self.awake
@@ -192,13 +194,16 @@ class Loop:
         while not interrupt.asked:
             speed = awake.begin(self.h, self.q, sleepy if self._unseen() else None)
             reach = awake.at.reach() if awake.at else 0.0
-            dt = clock.next_dt(self.step, self.t, max(speed, self.fastest), dx)
+            dt = clock.next_dt(self.step, self.t, max(speed, self.fastest, self.falling), dx)
             if dt is None:
                 self.reached = max(self.reached, reach)
                 return self._end()
             if isinstance(clock, Courant) and dt < SHORTEST * clock.end and clock.end - self.t > dt:
                 asked = f"velocities up to {max(speed, self.fastest):.3g} ask for steps of dt = {dt:.3g}"
-                return self.verdict("cfl-broken", f"{asked}, too short to come to t = {clock.end:g}; stopped")
+                return self.verdict("too-many-steps", f"{asked}, too short to come to t = {clock.end:g}; stopped")
+            if isinstance(clock, Courant) and self.step >= clock.most:
+                asked = f"velocities up to {max(speed, self.fastest):.3g} ask for more than {clock.most} steps"
+                return self.verdict("too-many-steps", f"{asked}; stopped")
             courant = speed * dt / dx
             if courant > stepper.limit * (1.0 + ROUNDING) and not self.force:
                 if self.step == 0:
@@ -241,7 +246,11 @@ class Loop:
     def verdict(self, kind: VerdictKind, message: str, cell: int | None = None) -> Verdict:
         """A verdict on the run so far, in words, with the step."""
         ledger = self.ledger
-        where = f"step {self.step + 1}: " if kind in ("non-finite", "cfl-broken", "window-too-small") else ""
+        where = (
+            f"step {self.step + 1}: "
+            if kind in ("non-finite", "cfl-broken", "window-too-small", "too-many-steps")
+            else ""
+        )
         notes = [f"{where}{message} at t = {self.t:.6g} after {self.step} steps"]
         if ledger.worst_courant > self.stepper.limit * (1.0 + ROUNDING):
             notes.append(f"the CFL bound was broken on demand, Courant number up to {ledger.worst_courant:.3g}")
@@ -368,6 +377,12 @@ class Loop:
         self.states.append((self.h.copy(), self.q.copy()))
         if self.causes:
             self.causes.save(self.t, self.h, self.q)
+
+
+def _falling(scene: Scene, clock: AnyClock) -> float:
+    """The speed that keeps a grain which starts to slide from passing more cells than the Courant number in a step."""
+    drive = max(abs(scene.chute.sin) - scene.resistance, 0.0)
+    return math.sqrt(0.5 * clock.number * scene.cells.dx * drive) if isinstance(clock, Courant) else 0.0
 
 
 def _over_the_bound(courant: float, dt: float, allowed: float, clock: AnyClock, limit: float) -> str:

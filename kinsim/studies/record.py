@@ -65,7 +65,7 @@ def failed(kind: str, message: str) -> Record:
 def record_of(run: Run, fields: tuple[str, ...]) -> Record:
     """Final state, totals of the ledger, and the histories asked for."""
     arrays = {"x": run.x, "h": run.h[-1], "u": run.u[-1]}
-    states = {"h": run.h, "q": run.q, "u": run.u}
+    states = {"h": run.h, "q": run.q, "u": run.u, "dt": run.dt}
     for name in fields:
         arrays[f"history_{name}"] = states[name] if name in states else run.entries.get(name, np.empty(0))
     if fields:

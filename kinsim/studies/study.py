@@ -81,7 +81,7 @@ def study(
     rounds = [[_again(row, number) for row in rows] for number in range(repeats)]
     members = {one.key: one for again in rounds for one in again if isinstance(one, Member)}
     kept: Keep = Folder(keep, resume) if keep is not None else Nowhere()
-    found = _collect(members, kept, workers, scheduler, tell or _silent)
+    found = collect(members, kept, workers, scheduler, tell or _silent)
     attrs = {
         "title": f"{scene.title or 'untitled'}: a study over {', '.join(lists)}",
         "scene": describe(Scene, scene),
@@ -92,7 +92,7 @@ def study(
     return to_dataset(lists, paired, [[_row(one, found) for one in again] for again in rounds], attrs)
 
 
-def _collect(
+def collect(
     members: Mapping[str, Member], kept: Keep, workers: int, scheduler: str | None, tell: Tell
 ) -> dict[str, Record]:
     """The records of all members, those that were kept first."""

@@ -1,0 +1,109 @@
+"""One place of the atlas: a mass between walls, of which everything can be made extreme."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+
+from ..clock import Courant
+from ..kinetic.velocity import Uniform
+from ..method import Kinetic, Macroscopic
+from ..model.cells import Cells
+from ..model.chute import ConstantSlope
+from ..model.friction import Coulomb, Frictionless
+from ..model.heap import Profile
+from ..scene import Scene
+from ..simulate import find_bound
+from ..stepper import make_stepper
+
+Mass = Literal["hump", "one cell", "none"]
+
+NUDGE = 1e-9
+"""Relative noise of the disturbed twin of a run."""
+
+MOST = 20
+"""So many times the steps asked for are taken at most."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A hump on a layer between walls, and a method. All lengths, times and velocities are dimensionless.
+
+    Attributes:
+        method: How it is computed.
+        number: The Courant number; None takes 0.9 of the method's limit.
+        steps: About so many steps are taken.
+        count, dx: The cells.
+        scale: The height of the hump.
+        ratio: The left half is so many times higher than the right one.
+        froude: u/c everywhere, c = sqrt(2 beta h) of the highest cell.
+        epsilon, zeta, delta: As in a scene; delta = 0 is no friction.
+        mass: Whether there is a hump, one cell of it, or nothing.
+        nodes: Velocity cells, in place of those of the method.
+    """
+
+    method: Kinetic | Macroscopic
+    number: float | None = None
+    steps: int = 200
+    count: int = 40
+    dx: float = 0.05
+    scale: float = 1.0
+    ratio: float = 1.0
+    froude: float = 0.5
+    epsilon: float = 0.4
+    zeta: float = 0.1
+    delta: float = 0.3
+    mass: Mass = "hump"
+    nodes: int | None = None
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The scene."""
+        y = (np.arange(self.count) + 0.5) / self.count
+        h = self.scale * (0.2 + np.exp(-64.0 * (y - 0.4) ** 2)) / 1.2
+        if self.mass != "hump":
+            h = np.where(np.arange(self.count) == self.count // 2, self.scale, 0.0) * (self.mass == "one cell")
+        h = np.where(y < 0.5, h, h / self.ratio)
+        flat = Scene(
+            Cells(0.0, self.count * self.dx, self.count), Profile(h), ConstantSlope(self.zeta),
+            Coulomb(self.delta) if self.delta else Frictionless(), "wall", self.epsilon,
+        )  # fmt: skip
+        u = self.froude * math.sqrt(2.0 * flat.beta * h.max()) * np.where(h > 0, 1.0, 0.0)
+        return replace(flat, heap=Profile(h, u))
+
+    @property
+    def nudged(self) -> Profile:
+        """The heap with noise."""
+        h, q = self.scene.initial()
+        noise = np.random.default_rng(0).uniform(-1.0, 1.0, h.size)
+        return Profile(h * (1.0 + NUDGE * noise), np.divide(q, h, out=np.zeros_like(q), where=h > 0))
+
+    @cached_property
+    def way(self) -> Kinetic | Macroscopic:
+        """The method, with the nodes, in a window that the disturbed twin shares."""
+        if not isinstance(self.method, Kinetic):
+            return self.method
+        method = self.method if self.nodes is None else replace(self.method, velocity=Uniform(self.nodes))
+        return method.within(find_bound(self.scene, method, self.clock, force=True)) if method.unbounded else method
+
+    @property
+    def limit(self) -> float:
+        """The largest Courant number of the method, (28)."""
+        return make_stepper(self.scene, self.method.twin if isinstance(self.method, Kinetic) else self.method).limit
+
+    @property
+    def clock(self) -> Courant:
+        """About `steps` steps, fewer where gravity accelerates the mass much."""
+        scene = self.scene
+        number = 0.9 * self.limit if self.number is None else self.number
+        h, q = scene.initial()
+        u = np.divide(np.abs(q), h, out=np.zeros_like(q), where=h > 0)
+        fastest = float(np.max(u + np.sqrt(2.0 * scene.beta * h)))
+        way = self.steps * number * scene.cells.dx
+        ends = [math.sqrt(2.0 * way / pull) for pull in [abs(scene.chute.sin) + scene.resistance] if pull > 0.0]
+        end = min([*ends, *([way / fastest] if fastest > 0.0 else [])], default=way)
+        return Courant(number, end, most=MOST * self.steps)
