@@ -336,7 +336,7 @@ class Loop:
 
     def _accept(self, h1: Array, q1: Array, dt: float, after: float) -> bool:
         """Take over a good step; says whether it is the last one."""
-        last = self.clock.next_dt(self.step + 1, after, 0.0, self.scene.cells.dx) is None
+        last = self.clock.next_dt(self.step + 1, after, 0.0, 1.0) is None
         for recorder in self.recorders:
             recorder.record(self.stepper.now, self.step + 1, self.t, after, last)
         if self.causes:

@@ -98,7 +98,7 @@ class Awake:
         if self.at is not self._whole:
             self.h1[:], self.q1[:] = h, q
         books = Books(0.0, 0.0, 0.0, 0.0) if self.at is None else self._step(self.at, h, q, dt)
-        return books._replace(inflow_left=dt * self._entering[0], inflow_right=dt * self._entering[1])
+        return Books(dt * self._entering[0], dt * self._entering[1], books.coupling_drift, books.window_loss)
 
     def kept(self) -> Kept:
         """What the next step depends on."""
@@ -133,10 +133,12 @@ class Awake:
 
     def _choose(self) -> Stepper | None:
         """Who takes the step: nobody, a part, or the whole where the part would be nearly that or would wrap round."""
-        nx = self._scene.cells.count
+        nx = self.h1.size
         low, high = self._awake
         if low >= high:
             return None
+        if (low, high) == (0, nx):
+            return self._whole
         self._cells = low // BLOCK * BLOCK, min(-(-high // BLOCK) * BLOCK, nx)
         left, right = self._padded()
         wraps = self._scene.boundary == "periodic" and (left == 0 or right == nx)

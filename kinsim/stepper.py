@@ -9,7 +9,7 @@ import numpy as np
 
 from .balance.scheme4 import Held, HeldSloped, Reflecting
 from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face
-from .balance.stages import Array, Stages, reach
+from .balance.stages import TOP, Array, Stages, reach
 from .balance.update import update
 from .balance.wing import Wing
 from .kinetic.choice import make_density
@@ -17,8 +17,10 @@ from .kinetic.fitted import FittedMeasure
 from .kinetic.project import PROJECTIONS, FluxDifference, Projection
 from .kinetic.velocity import Fitted
 from .kinetic.wing import Density
+from .macroscopic.sweep import TILE, slide, stand
 from .macroscopic.wing import ClosedForm
 from .method import Kinetic, Macroscopic
+from .model.boundary import shown
 from .scene import Scene
 
 
@@ -97,6 +99,29 @@ class Stepper:
         return 1e-3 * self.density.grid.dxi * h_max if self.density else 1e-12
 
 
+class Swept(Stepper):
+    """Scheme 1 in closed form, the same step to the bit, in two sweeps; see `macroscopic.sweep`."""
+
+    def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
+        super().__init__(scene, method)
+        self._ends = shown(scene.boundary, scene.cells.count)
+        self._ground = (scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx)
+        self._room = (np.zeros((2, TILE + 1)), TOP)
+
+    def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
+        """Stand at U^n, and sum up what leaves the cells, (24)."""
+        now = self.now
+        self._fastest = stand(h, q, self._beta, *self._ends, now.h, now.u, now.q, *self._room, now.F1, now.F2)
+        return self._fastest
+
+    def advance(self, dt: float) -> Books:
+        """U^{n+1}, (24)."""
+        now = self.now
+        slide(now.h, now.u, now.q, now.F1, now.F2, *self._ground, dt, now.h1, now.qhat, now.J, now.q1)
+        left, right = (0.0, 0.0) if self._periodic else (now.F1[0], -now.F1[-1])
+        return Books(dt * left, dt * right, dt * (now.F1[0] - now.F1[-1]) if self._periodic else 0.0, 0.0)
+
+
 class Heun(Stepper):
     """Two steps, of which the second starts at the end of the first; their mean with U^n is of second order in dt.
 
@@ -157,4 +182,7 @@ def make_scheme(method: Kinetic | Macroscopic, scene: Scene) -> Scheme:
 
 def make_stepper(scene: Scene, method: Kinetic | Macroscopic) -> Stepper:
     """The stepper that the order of the method asks for."""
-    return (Heun if method.order == 2 else Stepper)(scene, method)
+    if method.order == 2:
+        return Heun(scene, method)
+    sweeps = isinstance(method, Macroscopic) and type(make_scheme(method, scene)) is Scheme1
+    return (Swept if sweeps else Stepper)(scene, method)

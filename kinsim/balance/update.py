@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel, kernel_relaxed
+from ..kernel import kernel, kernel_inner, kernel_relaxed
 
 Array = NDArray[np.float64]
 
@@ -37,12 +37,19 @@ def update(
     Returns:
         What enters through the left end, through the right end, and what mixed faces create, per dt.
     """
-    nx = q.size
-    for i in range(nx):
+    move(h, q, left1, left2, right1, right2, lam, h1, qhat)
+    return left1[0], -right1[q.size - 1], made(left1, right1)
+
+
+@kernel_inner
+def move(
+    h: Array, q: Array, left1: Array, left2: Array, right1: Array, right2: Array, lam: float, h1: Array, qhat: Array
+) -> None:
+    """What the fluxes make of U^n."""
+    for i in range(q.size):
         h1[i] = h[i + 1] - lam * (right1[i] - left1[i])
-    for i in range(nx):
+    for i in range(q.size):
         qhat[i] = q[i] - lam * (right2[i] - left2[i])
-    return left1[0], -right1[nx - 1], made(left1, right1)
 
 
 @kernel_relaxed("reassoc", "nsz")

@@ -22,6 +22,13 @@ def ends(boundary: Boundary) -> tuple[str, str]:
     return (boundary, boundary) if isinstance(boundary, str) else boundary
 
 
+def shown(boundary: Boundary, nx: int) -> tuple[int, int, bool, bool]:
+    """Which of the `nx` inner cells the left and the right ghost show, and whether they show it mirrored."""
+    left, right = ends(boundary)
+    cells = (nx - 1 if left == "periodic" else 0), (0 if right == "periodic" else nx - 1)
+    return *cells, left == "wall", right == "wall"
+
+
 def extend(boundary: Boundary, h: NDArray[np.float64], u: NDArray[np.float64]) -> None:
     """Fill the ghost cells h[0], h[-1], u[0], u[-1] of arrays of shape (nx + 2,) in place."""
     left, right = ends(boundary)
