@@ -14,6 +14,10 @@ from .velocity import Grid
 from .wing import Density
 
 
+TILE = 64
+"""Cells whose half-range sums are made at once."""
+
+
 class OnDemand(Density):
     """A density of which a step makes only the half-range sums, from one side of one cell at a time.
 
@@ -33,6 +37,7 @@ class OnDemand(Density):
         self._w1, self._w2 = self._equilibrium.weights(grid)
         self._averaged = self._equilibrium is EQUILIBRIA["cell-average"]
         self._P, self._N = np.zeros(grid.half), np.zeros(grid.half)
+        self._tile = np.zeros((2, TILE))
         self._h, self._u = np.zeros((2, self._nx + 2))
         self._spans = np.zeros((self._nx, 2), dtype=np.int64)
         self._kept: dict[str, Array] = {}
@@ -51,7 +56,7 @@ class OnDemand(Density):
         self._made.discard("M")
         shape = (self._beta, self.grid.dxi, self._averaged)
         self._top = sum_cells(
-            now.h, now.u, *shape, self._w1, self._w2, self._P, self._N, self._sums, now.low, now.high
+            now.h, now.u, *shape, self._w1, self._w2, self._tile, self._sums, now.low, now.high
         )  # fmt: skip
         return self._top
 

@@ -1,8 +1,4 @@
-"""Half-range sums of M, cell by cell, over the nodes that it occupies: M is made on one side of xi = 0 and forgotten.
-
-The sums run outward from xi = 0 as those of `transport.half_sums` do, and what they leave out is zero: they are bitwise
-those of stored rows, and so are the outermost nodes.
-"""
+"""Half-range sums of M over the nodes that it occupies: M is made on one side of xi = 0 and forgotten."""
 
 from __future__ import annotations
 
@@ -11,8 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel, kernel_inner
-from .equilibrium.averages import average_inside, sample_inside
+from ..balance.sides import TINY
+from ..kernel import kernel, kernel_inner, kernel_part
+from .equilibrium.averages import antiderivative, average_inside, sample_inside
 from .shift import split_shift
 
 Array = NDArray[np.float64]
@@ -40,41 +37,107 @@ def sum_side(side: Array, begin: int, end: int, w1: Array, w2: Array) -> tuple[f
     return m1, m2
 
 
+@kernel_inner
+def occupied_nodes(h: float, u: float, beta: float, dxi: float, averaged: bool, half: int) -> tuple[int, int]:
+    """The first node xi > 0 at which M(h, xi - u) is not zero, and one past the last; the same number where none is."""
+    c = math.sqrt(2.0 * beta * max(h, 0.0))
+    begin = int(min(max((u - c) / dxi - 1.0, 0.0), half))
+    end = math.ceil(min(max((u + c) / dxi + 1.0, 0.0), half)) if c > 0.0 else begin
+    while end > begin and empty(h, u, beta, dxi, averaged, end - 1):
+        end -= 1
+    while begin < end and empty(h, u, beta, dxi, averaged, begin):
+        begin += 1
+    return begin, max(begin, end)
+
+
+@kernel_inner
+def empty(h: float, u: float, beta: float, dxi: float, averaged: bool, k: int) -> bool:
+    """Whether M is zero at node k."""
+    if averaged:
+        c = math.sqrt(2.0 * beta * h)
+        below, above = antiderivative((k * dxi - u) / c), antiderivative(((k + 1) * dxi - u) / c)
+        return not h / (math.pi * dxi) * (above - below) > 0.0
+    w = (k + 0.5) * dxi - u
+    return not 2.0 * beta * h - w * w > 0.0
+
+
+@kernel_part
+def add_sampled(
+    h: Array, v: Array, square: Array, beta: float, dxi: float, w1: Array, w2: Array, begin: int, end: int,
+    m1: Array, m2: Array,
+) -> None:  # fmt: skip
+    """Sums of samples, node by node for many cells; `v` is u or, for xi < 0, -u, and `square` room."""
+    scale = 1.0 / (math.pi * beta)
+    for i in range(h.size):
+        square[i], m1[i], m2[i] = 2.0 * beta * max(h[i], 0.0), 0.0, 0.0
+    for k in range(begin, end):
+        xi, first, second = (k + 0.5) * dxi, w1[k], w2[k]
+        for i in range(h.size):
+            w = xi - v[i]
+            M = scale * math.sqrt(max(square[i] - w * w, 0.0))
+            m1[i] += first * M
+            m2[i] += second * M
+
+
+@kernel_part
+def add_averages(
+    h: Array, v: Array, below: Array, beta: float, dxi: float, w1: Array, w2: Array, begin: int, end: int,
+    m1: Array, m2: Array,
+) -> None:  # fmt: skip
+    """Sums of cell averages, likewise."""
+    for i in range(h.size):
+        c = math.sqrt(2.0 * beta * max(h[i], 0.0))
+        below[i], m1[i], m2[i] = antiderivative((begin * dxi - v[i]) / max(c, TINY)), 0.0, 0.0
+    for k in range(begin, end):
+        edge, first, second = (k + 1) * dxi, w1[k], w2[k]
+        for i in range(h.size):
+            c = math.sqrt(2.0 * beta * max(h[i], 0.0))
+            above = antiderivative((edge - v[i]) / max(c, TINY))
+            M = max(max(h[i], 0.0) / (math.pi * dxi) * (above - below[i]), 0.0)
+            below[i] = above
+            m1[i] += first * M
+            m2[i] += second * M
+
+
 @kernel
 def sum_cells(
-    h: Array, u: Array, beta: float, dxi: float, averaged: bool, w1: Array, w2: Array, P: Array, N: Array,
+    h: Array, u: Array, beta: float, dxi: float, averaged: bool, w1: Array, w2: Array, room: Array,
     sums: Array, low: Array, high: Array,
 ) -> float:  # fmt: skip
     """Half-range sums of each ghosted cell, shape (4, nx + 2), and its outermost occupied nodes.
 
-    P and N are room for the sides. Returns the outermost of all nodes, 0 if all is dry.
+    M is made node by node for `room.shape[1]` cells at once, and never stored. The sums of a cell run outward from
+    xi = 0 as those of `transport.half_sums` do, and what they add besides is zero: they are bitwise those of stored
+    rows, and so are the outermost nodes. Returns the outermost of all nodes, 0 if all is dry.
     """
-    top = 0
-    for i in range(h.size):
-        first, last = fill_occupied(h[i], u[i], beta, dxi, averaged, P)
-        begin, end = fill_occupied(h[i], -u[i], beta, dxi, averaged, N)
-        p1, p2, n1, n2 = 0.0, 0.0, 0.0, 0.0
-        both = min(last, end) if first == 0 and begin == 0 else 0
-        for k in range(both):
-            p1 += w1[k] * P[k]
-            p2 += w2[k] * P[k]
-            n1 -= w1[k] * N[k]
-            n2 += w2[k] * N[k]
-        for k in range(max(first, both), last):
-            p1 += w1[k] * P[k]
-            p2 += w2[k] * P[k]
-        for k in range(max(begin, both), end):
-            n1 -= w1[k] * N[k]
-            n2 += w2[k] * N[k]
-        sums[0, i], sums[1, i], sums[2, i], sums[3, i] = p1, p2, n1, n2
-        low[i], high[i] = np.inf, -np.inf
-        if first < last:
-            low[i], high[i] = (first + 0.5) * dxi, (last - 0.5) * dxi
-            top = max(top, last)
-        if begin < end:
-            low[i] = -(end - 0.5) * dxi
-            high[i] = high[i] if first < last else -(begin + 0.5) * dxi
-            top = max(top, end)
+    top, half = 0, w1.size
+    for start in range(0, h.size, room.shape[1]):
+        stop = min(start + room.shape[1], h.size)
+        tile, count = slice(start, stop), stop - start
+        v, spare = room[0, :count], room[1, :count]
+        begins, ends = (half, half), (0, 0)
+        for i in range(start, stop):
+            v[i - start] = -u[i]
+            low[i], high[i] = np.inf, -np.inf
+            first, last = occupied_nodes(h[i], u[i], beta, dxi, averaged, half)
+            begin, end = occupied_nodes(h[i], -u[i], beta, dxi, averaged, half)
+            if first < last:
+                low[i], high[i] = (first + 0.5) * dxi, (last - 0.5) * dxi
+                begins, ends = (min(begins[0], first), begins[1]), (max(ends[0], last), ends[1])
+            if begin < end:
+                low[i] = -(end - 0.5) * dxi
+                high[i] = high[i] if first < last else -(begin + 0.5) * dxi
+                begins, ends = (begins[0], min(begins[1], begin)), (ends[0], max(ends[1], end))
+        top = max(top, max(ends[0], ends[1]))
+        p, n = (sums[0, tile], sums[1, tile]), (sums[2, tile], sums[3, tile])
+        if averaged:
+            add_averages(h[tile], u[tile], spare, beta, dxi, w1, w2, begins[0], ends[0], p[0], p[1])
+            add_averages(h[tile], v, spare, beta, dxi, w1, w2, begins[1], ends[1], n[0], n[1])
+        else:
+            add_sampled(h[tile], u[tile], spare, beta, dxi, w1, w2, begins[0], ends[0], p[0], p[1])
+            add_sampled(h[tile], v, spare, beta, dxi, w1, w2, begins[1], ends[1], n[0], n[1])
+        for i in range(start, stop):
+            sums[2, i] = 0.0 - sums[2, i]
     return (top - 0.5) * dxi if top > 0 else 0.0
 
 
