@@ -9,11 +9,13 @@ references, and either keeps a short loop from running in vector registers.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel, kernel_inner, kernel_part
-from .equilibrium.averages import average_inside, sample_inside
+from .equilibrium.averages import average_inside
 from .shift import split_shift
 
 Array = NDArray[np.float64]
@@ -22,12 +24,21 @@ Spans = NDArray[np.int64]
 
 
 @kernel_inner
-def fill_row(h: float, u: float, beta: float, dxi: float, averaged: bool, rows: Array, row: int) -> int:
-    """M(h, xi - u) on the side xi > 0; returns one past the last node at which it is not zero."""
-    side = rows[row]
-    begin, end = average_inside(h, u, beta, dxi, side) if averaged else sample_inside(h, u, beta, dxi, side)
-    side[:begin] = 0.0
-    side[end:] = 0.0
+def fill_row(h: float, u: float, beta: float, dxi: float, averaged: bool, side: Array, rows: Array, row: int) -> int:
+    """M(h, xi - u) on the side xi > 0, of which `side` are the nodes; returns a number past which it is zero."""
+    half = side.size
+    if averaged:
+        begin, end = average_inside(h, u, beta, dxi, rows[row])
+        blank(rows[row], 0, begin)
+    else:
+        square, scale = 2.0 * beta * max(h, 0.0), 1.0 / (math.pi * beta)
+        c = math.sqrt(square)
+        end = min((int(min(max((u + c) / dxi + 1.0, 0.0), half)) + 8) & -8, half) if c > 0.0 else 0
+        for k in range(np.uint64(end)):
+            w = side[k] - u
+            rows[row, k] = scale * math.sqrt(max(square - w * w, 0.0))
+    for k in range(np.uint64(end), np.uint64(half)):
+        rows[row, k] = 0.0
     return end
 
 
@@ -118,13 +129,13 @@ def carry(
     rest = rows.shape[0]  # no number is written out, or each would be compiled for itself
     after, before, here, face, next_face = rest - 10, rest - 8, rest - 6, rest - 4, rest - 2
     for c in range(nx + 2):
-        ahead_after = fill_row(h[c], u[c], beta, dxi, averaged, rows, after)
-        behind_after = fill_row(h[c], -u[c], beta, dxi, averaged, rows, after + 1)
+        ahead_after = fill_row(h[c], u[c], beta, dxi, averaged, side, rows, after)
+        behind_after = fill_row(h[c], -u[c], beta, dxi, averaged, side, rows, after + 1)
         ahead_next, behind_next = 0, 0
         if c > 0 and ((c > 1 and at_right[c - 2]) or (c <= nx and at_left[c - 1])):
             k = c - 1
-            ahead_next = fill_row(h_left[k], u_left[k], beta, dxi, averaged, rows, next_face)
-            behind_next = fill_row(h_right[k], -u_right[k], beta, dxi, averaged, rows, next_face + 1)
+            ahead_next = fill_row(h_left[k], u_left[k], beta, dxi, averaged, side, rows, next_face)
+            behind_next = fill_row(h_right[k], -u_right[k], beta, dxi, averaged, side, rows, next_face + 1)
             cap(rows, next_face, here, ahead_next)
             cap(rows, next_face + 1, after + 1, behind_next)
         if c > 1:
