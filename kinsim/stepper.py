@@ -9,15 +9,16 @@ import numpy as np
 
 from .balance.scheme4 import Held, HeldSloped, Reflecting
 from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face
+from .balance.slide import TILE, slide
 from .balance.stages import TOP, Array, Stages, reach
 from .balance.update import update
 from .balance.wing import Wing
-from .kinetic.choice import make_density
+from .kinetic.choice import make_density, may_forget
 from .kinetic.fitted import FittedMeasure
 from .kinetic.project import PROJECTIONS, FluxDifference, Projection
 from .kinetic.velocity import Fitted
 from .kinetic.wing import Density
-from .macroscopic.sweep import TILE, slide, stand
+from .macroscopic.sweep import stand
 from .macroscopic.wing import ClosedForm
 from .method import Kinetic, Macroscopic
 from .model.boundary import shown
@@ -99,13 +100,34 @@ class Stepper:
         return 1e-3 * self.density.grid.dxi * h_max if self.density else 1e-12
 
 
-class Swept(Stepper):
-    """Scheme 1 in closed form, the same step to the bit, in two sweeps; see `macroscopic.sweep`."""
+class Sliding(Stepper):
+    """Scheme 1 where U^{n+1} follows from fluxes: the same step to the bit, in fewer sweeps; see `balance.slide`."""
+
+    def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
+        super().__init__(scene, method)
+        self._ground = (scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx)
+
+    def advance(self, dt: float) -> Books:
+        """From where `begin` stood to U^{n+1}, (24)."""
+        now, F1 = self.now, self.now.F1
+        self._fluxes()
+        slide(now.h, now.u, now.q, F1, now.F2, *self._ground, dt, now.h1, now.qhat, now.J, now.q1)
+        self.wing.transport(now, dt / self._dx)
+        lost = self._dx * self.wing.force(now)
+        if self._periodic:
+            return Books(0.0, 0.0, dt * (F1[0] - F1[-1]), lost)
+        return Books(dt * F1[0], -dt * F1[-1], 0.0, lost)
+
+    def _fluxes(self) -> None:
+        self.wing.upwind_flux(self.now)
+
+
+class Swept(Sliding):
+    """The same in closed form, where the fluxes are made when the step begins; see `macroscopic.sweep`."""
 
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
         super().__init__(scene, method)
         self._ends = shown(scene.boundary, scene.cells.count)
-        self._ground = (scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx)
         self._room = (np.zeros((2, TILE + 1)), TOP)
 
     def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
@@ -114,12 +136,8 @@ class Swept(Stepper):
         self._fastest = stand(h, q, self._beta, *self._ends, now.h, now.u, now.q, *self._room, now.F1, now.F2)
         return self._fastest
 
-    def advance(self, dt: float) -> Books:
-        """U^{n+1}, (24)."""
-        now = self.now
-        slide(now.h, now.u, now.q, now.F1, now.F2, *self._ground, dt, now.h1, now.qhat, now.J, now.q1)
-        left, right = (0.0, 0.0) if self._periodic else (now.F1[0], -now.F1[-1])
-        return Books(dt * left, dt * right, dt * (now.F1[0] - now.F1[-1]) if self._periodic else 0.0, 0.0)
+    def _fluxes(self) -> None:
+        """They are there."""
 
 
 class Heun(Stepper):
@@ -184,5 +202,10 @@ def make_stepper(scene: Scene, method: Kinetic | Macroscopic) -> Stepper:
     """The stepper that the order of the method asks for."""
     if method.order == 2:
         return Heun(scene, method)
-    sweeps = isinstance(method, Macroscopic) and type(make_scheme(method, scene)) is Scheme1
-    return (Swept if sweeps else Stepper)(scene, method)
+    scheme = make_scheme(method, scene)
+    if type(scheme) is not Scheme1:
+        return Stepper(scene, method)
+    if isinstance(method, Macroscopic):
+        return Swept(scene, method)
+    plain = isinstance(method.velocity, Fitted) or may_forget(method, scheme)
+    return (Sliding if plain else Stepper)(scene, method)

@@ -13,7 +13,6 @@ from .transport import add_sides, transport
 from .velocity import Grid
 from .wing import Density
 
-
 TILE = 64
 """Cells whose half-range sums are made at once."""
 

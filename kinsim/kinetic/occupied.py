@@ -38,11 +38,15 @@ def sum_side(side: Array, begin: int, end: int, w1: Array, w2: Array) -> tuple[f
 
 
 @kernel_inner
-def occupied_nodes(h: float, u: float, beta: float, dxi: float, averaged: bool, half: int) -> tuple[int, int]:
-    """The first node xi > 0 at which M(h, xi - u) is not zero, and one past the last; the same number where none is."""
-    c = math.sqrt(2.0 * beta * max(h, 0.0))
-    begin = int(min(max((u - c) / dxi - 1.0, 0.0), half))
-    end = math.ceil(min(max((u + c) / dxi + 1.0, 0.0), half)) if c > 0.0 else begin
+def occupied_nodes(
+    h: float, u: float, beta: float, dxi: float, averaged: bool, slowest: float, quickest: float, half: int
+) -> tuple[int, int]:
+    """The first node xi > 0 at which M(h, xi - u) is not zero, and one past the last; the same number where none is.
+
+    M reaches from `slowest` to `quickest`, in velocity cells.
+    """
+    begin = int(min(max(slowest - 1.0, 0.0), half))
+    end = math.ceil(min(max(quickest + 1.0, 0.0), half)) if h > 0.0 else begin
     while end > begin and empty(h, u, beta, dxi, averaged, end - 1):
         end -= 1
     while begin < end and empty(h, u, beta, dxi, averaged, begin):
@@ -119,8 +123,10 @@ def sum_cells(
         for i in range(start, stop):
             v[i - start] = -u[i]
             low[i], high[i] = np.inf, -np.inf
-            first, last = occupied_nodes(h[i], u[i], beta, dxi, averaged, half)
-            begin, end = occupied_nodes(h[i], -u[i], beta, dxi, averaged, half)
+            c = math.sqrt(2.0 * beta * max(h[i], 0.0))
+            slowest, quickest = (u[i] - c) / dxi, (u[i] + c) / dxi
+            first, last = occupied_nodes(h[i], u[i], beta, dxi, averaged, slowest, quickest, half)
+            begin, end = occupied_nodes(h[i], -u[i], beta, dxi, averaged, -quickest, -slowest, half)
             if first < last:
                 low[i], high[i] = (first + 0.5) * dxi, (last - 0.5) * dxi
                 begins, ends = (min(begins[0], first), begins[1]), (max(ends[0], last), ends[1])

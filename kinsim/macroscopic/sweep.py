@@ -1,4 +1,4 @@
-"""Scheme 1 in closed form in two sweeps over tiles of cells that stay in the first-level cache.
+"""The first half of a step of scheme 1 in closed form: one sweep over tiles that stay in the first-level cache.
 
 What is called for each tile are the kernels of the rooms, so that the bits are theirs; see `stepper.Swept`.
 """
@@ -8,17 +8,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..balance.impulse import sliding
 from ..balance.sides import faces_of_cells
+from ..balance.slide import TILE
 from ..balance.stages import largest, quicken, split
-from ..balance.update import move
 from ..kernel import kernel
 from .half_moments import small_sides
 
 Array = NDArray[np.float64]
-
-TILE = 512
-"""Cells of a tile."""
 
 
 @kernel
@@ -48,19 +44,3 @@ def stand(
         faces_of_cells(h[begin : end + 1], u[begin : end + 1], beta, m[0], m[1], F1[begin:end], F2[begin:end])
         m[0, 0], m[1, 0] = m[0, end - begin], m[1, end - begin]
     return largest(room)
-
-
-@kernel
-def slide(
-    h: Array, u: Array, q: Array, F1: Array, F2: Array, s: float, R: float, beta: float, dx: float, dt: float,
-    h1: Array, qhat: Array, J: Array, q1: Array,
-) -> None:  # fmt: skip
-    """U^{n+1} = U^n - lam (F_{i+1/2} - F_{i-1/2}) + (0, J) with the impulse of scheme 1, and the stages between."""
-    lam = dt / dx
-    for begin in range(0, q.size, TILE):
-        end = min(begin + TILE, q.size)
-        around, here, after = slice(begin, end + 2), slice(begin, end), slice(begin + 1, end + 1)
-        move(h[around], q[here], F1[here], F2[here], F1[after], F2[after], lam, h1[here], qhat[here])
-        sliding(h[around], u[around], h1[here], s, R, beta, dx, dt, J[here])
-        for i in range(begin, end):
-            q1[i] = qhat[i] + J[i]

@@ -1,0 +1,35 @@
+"""The second half of a step of scheme 1: from the fluxes to U^{n+1} in one sweep over tiles of cells.
+
+What is called for each tile are the kernels of the rooms, so that the bits are theirs, while their arrays are still in
+the first-level cache; see `stepper.Sliding`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..kernel import kernel
+from .impulse import sliding
+from .update import move
+
+Array = NDArray[np.float64]
+
+TILE = 512
+"""Cells of a tile."""
+
+
+@kernel
+def slide(
+    h: Array, u: Array, q: Array, F1: Array, F2: Array, s: float, R: float, beta: float, dx: float, dt: float,
+    h1: Array, qhat: Array, J: Array, q1: Array,
+) -> None:  # fmt: skip
+    """U^{n+1} = U^n - lam (F_{i+1/2} - F_{i-1/2}) + (0, J) with the impulse of scheme 1, and the stages between."""
+    lam = dt / dx
+    for begin in range(0, q.size, TILE):
+        end = min(begin + TILE, q.size)
+        around, here, after = slice(begin, end + 2), slice(begin, end), slice(begin + 1, end + 1)
+        move(h[around], q[here], F1[here], F2[here], F1[after], F2[after], lam, h1[here], qhat[here])
+        sliding(h[around], u[around], h1[here], s, R, beta, dx, dt, J[here])
+        for i in range(begin, end):
+            q1[i] = qhat[i] + J[i]
