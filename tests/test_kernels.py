@@ -61,7 +61,7 @@ def example(kernel: object) -> list[object]:
         elif (
             kind == "Array"
             and name in ghosted
-            and name_of in ("balanced", "sliding", "stopping", "update", "candidate", "fastest")
+            and name_of in ("balanced", "sliding", "stopping", "update", "move", "candidate", "fastest")
             and not (name == "h" and name_of == "split")
         ):
             arguments.append(dice.uniform(0.1, 1.0, nx + 2))
@@ -122,8 +122,8 @@ def test_rooms_nobody_chose_are_never_compiled() -> None:
         "kinsim.simulate(scene, kinsim.Kinetic(scheme=1, velocity=kinsim.Uniform(8)), kinsim.Fixed(1e-3, 2))\n"
         "from kinsim.kinetic import carry, derivative, fitted, occupied, shift, transport\n"
         "from kinsim.kinetic.equilibrium import averages, entropic, matched\n"
-        "from kinsim.balance import impulse, interface\n"
-        "used = [averages.cell_average, occupied.sum_cells, carry.carry, impulse.sliding]\n"
+        "from kinsim.balance import impulse, interface, slide\n"
+        "used = [averages.cell_average, occupied.sum_cells, carry.carry, slide.slide]\n"
         "unused = [averages.sampled, matched.matched, entropic.entropic, fitted.flux_fitted, shift.shift_pfc,\n"
         "          shift.shift_linear, derivative.derivative_upwind, derivative.derivative_centred,\n"
         "          interface.balanced, impulse.stopping, transport.transport]\n"
