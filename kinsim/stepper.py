@@ -11,7 +11,7 @@ from .balance.scheme4 import Held, HeldSloped, Reflecting
 from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face
 from .balance.slide import TILE, slide
 from .balance.stages import TOP, Array, Stages, reach
-from .balance.update import update
+from .balance.update import mean_of_stages, update
 from .balance.wing import Wing
 from .kinetic.choice import make_density, may_forget
 from .kinetic.fitted import FittedMeasure
@@ -151,38 +151,35 @@ class Heun(Stepper):
 
     limit = 0.49
 
+    def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
+        super().__init__(scene, method)
+        self._then = Stages.empty(scene.cells.count, self.scheme.sloped)
+        self._M = np.zeros_like(self.density.M) if self.density else None
+
     def advance(self, dt: float) -> Books:
-        now, density = self.now, self.density
-        dx = self.scene.cells.dx
-        h, q = now.h[1:-1].copy(), now.q.copy()
-        M = density.M.copy() if density else None
+        now, then, density, dx = self.now, self._then, self.density, self._dx
+        if density and self._M is not None:
+            np.copyto(self._M, density.M)
         first = super().advance(dt)
-        h1, q1, J = now.h1.copy(), now.q1.copy(), now.J.copy()
-        F = now.F1.copy(), now.F2.copy()
+        self.now = then
         spare = 0.5 * density.grid.dxi if density else 0.0
-        speed = self.begin(h1, q1, 0.5 * dx / dt - spare)
+        speed = self.begin(now.h1, now.q1, 0.5 * dx / dt - spare)
         if speed * dt > dx:
-            self._stand_again(h, q, M)
+            self._stand_again(now)
             return first
         second = super().advance(dt)
-        np.multiply(0.5, h + now.h1, out=now.h1)
-        still = (q1 == 0.0) & (now.q1 == 0.0)  # at rest after both stages is at rest
-        now.q1[:] = np.where(still, 0.0, 0.5 * (q + now.q1))
-        np.multiply(0.5, J + now.J, out=now.J)
-        np.subtract(now.q1, now.J, out=now.qhat)
-        for mean, of_first in zip((now.F1, now.F2), F, strict=True):
-            np.multiply(0.5, of_first + mean, out=mean)
-        if density and M is not None:
-            density.average(M[1:-1])
-        self._stand_again(h, q, M)
+        of_then = (then.h1, then.q, then.q1, then.J, then.F1, then.F2)
+        mean_of_stages(now.h, now.q, *of_then, now.h1, now.q1, now.qhat, now.J, now.F1, now.F2)
+        if density and self._M is not None:
+            density.average(self._M[1:-1])
+        self._stand_again(now)
         return Books(*(0.5 * (a + b) for a, b in zip(first, second, strict=True)))
 
-    def _stand_again(self, h: Array, q: Array, M: Array | None) -> None:
-        """Let the stages show U^n, from which the step started."""
-        self.now.begin(self.scene, h, q)
-        self.scheme.prepare(self.now, math.inf)
-        if self.density and M is not None:
-            self.density.M[:] = M
+    def _stand_again(self, now: Stages) -> None:
+        """Show the stages of U^n, from which the step started."""
+        self.now = now
+        if self.density and self._M is not None:
+            np.copyto(self.density.M, self._M)
 
 
 def make_scheme(method: Kinetic | Macroscopic, scene: Scene) -> Scheme:

@@ -56,12 +56,12 @@ def example(kernel: object) -> list[object]:
             arguments.append(np.zeros(n))
         elif name in ("s", "W") and kind == "Array":
             arguments.append(gauss_jacobi(4)[0 if name == "s" else 1].copy())
-        elif kind == "Array" and name in ("F1", "F2", "B1", "B2"):
+        elif kind == "Array" and name in ("F1", "F2", "B1", "B2", "F1_then", "F2_then"):
             arguments.append(dice.uniform(-1.0, 1.0, nx + 1))
         elif (
             kind == "Array"
             and name in ghosted
-            and name_of in ("balanced", "sliding", "stopping", "update", "move", "candidate", "fastest")
+            and name_of in ("balanced", "sliding", "stopping", "update", "move", "mean_of_stages", "candidate")
             and not (name == "h" and name_of == "split")
         ):
             arguments.append(dice.uniform(0.1, 1.0, nx + 2))

@@ -59,3 +59,22 @@ def made(left1: Array, right1: Array) -> float:
     for i in range(np.uint64(1), np.uint64(left1.size)):
         total += left1[i] - right1[i - np.uint64(1)]
     return total
+
+
+@kernel
+def mean_of_stages(
+    h: Array, q: Array, h2: Array, q_between: Array, q2: Array, J2: Array, F1_then: Array, F2_then: Array,
+    h1: Array, q1: Array, qhat: Array, J: Array, F1: Array, F2: Array,
+) -> None:  # fmt: skip
+    """The mean of U^n = (h, q) and U of the second stage, in place of what the first stage left; h is ghosted.
+
+    What is at rest after both stages is at rest.
+    """
+    for i in range(q.size):
+        h1[i] = 0.5 * (h[i + 1] + h2[i])
+        q1[i] = 0.0 if q_between[i] == 0.0 and q2[i] == 0.0 else 0.5 * (q[i] + q2[i])
+        J[i] = 0.5 * (J[i] + J2[i])
+        qhat[i] = q1[i] - J[i]
+    for i in range(F1.size):
+        F1[i] = 0.5 * (F1[i] + F1_then[i])
+        F2[i] = 0.5 * (F2[i] + F2_then[i])
