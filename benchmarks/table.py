@@ -19,9 +19,12 @@ import grid
 import growth
 import shell
 import studies
+import where
 from rich.console import Console
 from rich.table import Table
 from rows import Row
+
+HEADS = ["what", "measured", "target", "", "times"]
 
 
 def main() -> None:
@@ -49,17 +52,30 @@ def main() -> None:
     met = sum(row.verdict == "met" for row in found)
     console.print(f"{met} met, {missed} missed; {time.perf_counter() - began:.0f} s on {platform.machine()}")
     asked.out.parent.mkdir(parents=True, exist_ok=True)
-    entries = [{**asdict(row), "verdict": row.verdict} for row in found]
-    asked.out.write_text(json.dumps(entries, indent=1) + "\n", encoding="utf-8")
+    profile = [list(part) for part in where.parts(asked.quick)]
+    record = {
+        "rows": [{**asdict(row), "verdict": row.verdict} for row in found],
+        "tables": [
+            {"caption": f"{met} met, {missed} missed", "heads": HEADS, "rows": [cells(row) for row in found]},
+            {"caption": "Where the time goes", "heads": ["part", "time"], "rows": profile},
+        ],
+    }
+    asked.out.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+
+
+def cells(row: Row) -> list[str]:
+    """A row in words."""
+    measured = "" if row.measured is None else f"{row.measured:.3g}"
+    return [row.what, measured, row.words, row.verdict, row.detail]
 
 
 def table(rows: list[Row]) -> Table:
     """What was measured beside what it should be."""
     made = Table(title="min / median / max stand in the last column", title_justify="left")
-    for column in ("what", "measured", "target", "", "times"):
+    for column in HEADS:
         made.add_column(column, justify="right" if column in ("measured", "target") else "left")
     for row in rows:
-        measured = "" if row.measured is None else f"{row.measured:.3g}"
         style = {"missed": "bold red", "met": "green"}.get(row.verdict, "dim")
-        made.add_row(row.what, measured, row.words, f"[{style}]{row.verdict}[/]", row.detail)
+        what, measured, words, verdict, detail = cells(row)
+        made.add_row(what, measured, words, f"[{style}]{verdict}[/]", detail)
     return made
