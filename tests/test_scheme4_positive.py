@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from repaired import EPS, EVERY, IN_CLOSED_FORM, limit, wild
+from repaired import EPS, EVERY, IN_CLOSED_FORM, METHODS, limit, wild
 from states import random_states, scene_with
 
-from kinsim import Courant, Kinetic, Macroscopic, Uniform, simulate, step
+from kinsim import Courant, Fixed, Kinetic, Macroscopic, Uniform, simulate, step
 from kinsim.stepper import make_stepper
 
 
@@ -98,6 +98,18 @@ def test_a_film_and_a_dry_bed_are_the_same(method: Macroscopic, zeta: float, del
         scene = scene_with(np.where(np.abs(x - 0.4) < 0.2, 1.0, film), zeta=zeta, delta=delta, boundary="open")
         ends.append(simulate(scene, method, Courant(0.9 * limit(method), 1.0), 10**6).h[-1])
     assert 0.05 * np.abs(ends[0] - ends[1]).sum() <= 1e-10
+
+
+@pytest.mark.parametrize("name", ["closed, first", "closed, second", "closed, second, mc", "fitted, first"])
+@pytest.mark.parametrize(("zeta", "delta"), [(0.0, None), (0.3, 0.25), (-0.6, 0.25)])
+def test_a_film_far_before_a_front_is_dry_ground(name: str, zeta: float, delta: float | None) -> None:
+    """A higher column, for longer, also down ground steeper than its friction angle; the film alone weighs 1e-11."""
+    x = (np.arange(200) + 0.5) / 200
+    ends = []
+    for film in (0.0, 1e-12):
+        scene = scene_with(np.where(np.abs(x - 0.5) < 0.1, 1.5, film), zeta=zeta, delta=delta, boundary="wall")
+        ends.append(simulate(scene, METHODS[name], Fixed(0.005, 400), 10**6).h[-1])
+    assert 0.05 * np.abs(ends[0] - ends[1]).sum() <= (2e-10 if "mc" in name else 1e-10)
 
 
 @EVERY

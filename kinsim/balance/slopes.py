@@ -28,8 +28,11 @@ def limited(before: float, after: float, steepest: float) -> float:
 
 @kernel
 def say(other: float, h: float) -> float:
-    """How much the velocity of a neighbour counts: less, where it has less than a quarter of the height."""
-    return min(1.0, 4.0 * other / h) if h > 0.0 else 0.0
+    """How much the velocity of a neighbour counts: less, where it has less than half of the height.
+
+    So that a film before a front does what dry ground does.
+    """
+    return min(1.0, 2.0 * other / h) if h > 0.0 else 0.0
 
 
 @kernel

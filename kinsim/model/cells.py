@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from ..memory import require
 from ..value import Number, Whole, value
+
+
+BYTES = 400
+"""That a cell takes in a run: about fifty numbers."""
 
 
 @value
@@ -22,6 +27,7 @@ class Cells:
     def __post_init__(self) -> None:
         if not self.left < self.right:
             raise ValueError(f"left = {self.left:g} is not below right = {self.right:g}; exchange or change them")
+        require(float(self.count) * BYTES, f"{self.count} cells")
 
     @property
     def dx(self) -> float:
