@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 MARKED = re.compile(r"(<!-- (table|claims) (\w+)(?: (\d+))? -->\n).*?(<!-- end -->)", re.DOTALL)
-LINKED = re.compile(r"\(figures/(scheme_4[\w-]*\.png)\)")
+LINKED = re.compile(r"\(figures/([\w-]+\.png)\)")
 
 
 def main() -> None:

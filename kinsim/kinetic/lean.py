@@ -25,12 +25,15 @@ class OnDemand(Density):
     """
 
     reports = False
+    rooms = 3
+    """Where someone asks for M, what stands between, and f."""
     _now: Stages
     """The stages of the last step."""
     _stands = False
     """Whether the last step is the one from the state at which M stands."""
 
     def _allocate(self, grid: Grid) -> None:
+        self._see_room(grid)
         self.grid = grid
         self.xi = grid.xi
         self._w1, self._w2 = self._equilibrium.weights(grid)

@@ -9,6 +9,7 @@ from ..balance.interface import Faces
 from ..balance.schemes import Scheme
 from ..balance.stages import Array, Stages, reach
 from ..checkpoint import Kept
+from ..memory import require
 from ..scene import Scene
 from .equilibrium import Equilibrium, Status
 from .equilibrium.averages import mass_outside
@@ -31,6 +32,8 @@ class Density:
     """
 
     reports = True
+    rooms = 5
+    """Densities that stand side by side."""
 
     def __init__(
         self, scene: Scene, velocity: Uniform | Window, equilibrium: Equilibrium, force: Force, scheme: Scheme
@@ -54,6 +57,7 @@ class Density:
 
     def _allocate(self, grid: Grid) -> None:
         nx, n = self._nx, grid.count
+        self._see_room(grid)
         self.grid = grid
         self.xi = grid.xi
         self._w1, self._w2 = self._equilibrium.weights(grid)
@@ -62,6 +66,10 @@ class Density:
         self._minus = np.zeros((nx + 2, n)) if self._scheme.sloped else self._M
         self._transported = np.zeros((nx, n))
         self._f = np.zeros((nx, n)) if self._forced else self._transported
+
+    def _see_room(self, grid: Grid) -> None:
+        entries = f"{self._nx} x {grid.count} entries"
+        require(8.0 * self.rooms * (self._nx + 2) * grid.count, f"{self.rooms} densities of {entries}")
 
     @property
     def M(self) -> Array:

@@ -11,7 +11,6 @@ from pydantic import Field
 from ..memory import require
 from ..value import Number, Whole, value
 
-
 BYTES = 400
 """That a cell takes in a run: about fifty numbers."""
 
