@@ -32,6 +32,8 @@ from .stability.atlas import atlas as atlas
 from .step import Step as Step
 from .step import step as step
 from .studies.study import study as study
+from .trades.family import Choice as Choice
+from .trades.trade import trade as trade
 from .watch.dump import Dump as Dump
 
 __version__: str

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .commands import sweep
+from .commands import sweep, trade
 from .errors import InputError
 from .shell import EXIT_CODES, Force, MethodKind, SceneName, Settings, complain, keep_apart, read_scene, told
 from .stability.command import atlas
@@ -259,7 +259,7 @@ def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file
         raise InputError(f"{name}: clock: the first step breaks the CFL bound (28); take a smaller one, or force it")
 
 
-for command in (sweep, atlas):
+for command in (sweep, trade, atlas):
     app.command()(told()(command))
 
 

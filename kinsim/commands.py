@@ -42,7 +42,7 @@ def sweep(
     """
     from .overview import saved_every
     from .progress import Watched
-    from .report import study_report
+    from .report_many import study_report
     from .store import check_destination, write_netcdf
     from .studies.study import study
     from .studies.vary import read_over
@@ -70,3 +70,49 @@ def sweep(
     if not quiet:
         study_report(found, out)
     raise typer.Exit(max(EXIT_CODES.get(kind, 1) for kind in found["verdict_kind"].to_numpy().ravel().tolist()))
+
+
+def trade(
+    name: SceneName,
+    settings: Settings = None,
+    line: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="LINE",
+            help="Only this part of the family: closed form, cell average, sampled, fitted, "
+            "force, dx, courant, order; may be repeated.",
+        ),
+    ] = None,
+    repeats: Annotated[int, typer.Option(help="So often each member is timed.")] = 5,
+    out: Annotated[Path, typer.Option(metavar="TRADE.NC", help="Write here, and beside it .csv and .png.")] = Path(
+        "trade.nc"
+    ),
+    resume: Resume = False,
+    quiet: Quiet = False,
+) -> None:
+    """Measure cost against error of a family of methods on a scene.
+
+    All members end when the scene's clock does, each with the steps of its own Courant number. What is measured is
+    kept at once in TRADE.NC.members; after Ctrl-C, --resume does the rest.
+    """
+    from .plot import check_picture
+    from .plot.trade import plot_trade
+    from .progress import Watched
+    from .report_many import trade_report
+    from .store import check_destination, write_netcdf, write_text
+    from .trades.trade import trade
+
+    file = read_scene(name, settings, None)
+    check_destination(out)
+    table, picture = out.with_suffix(".csv"), check_picture(out.with_suffix(".png"))
+    keep_apart(name, out, table, picture)
+    with Watched(quiet) as progress:
+        measured = trade(
+            file.scene, file.method, file.clock, lines=line, repeats=repeats, keep=f"{out}.members", resume=resume,
+            tell=progress.tell,
+        )  # fmt: skip
+    write_netcdf(measured, out)
+    write_text(measured.to_dataframe().to_csv(index=False), table)
+    plot_trade(measured, picture)
+    if not quiet:
+        trade_report(measured, [out, table, picture])

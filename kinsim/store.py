@@ -67,6 +67,17 @@ def write_netcdf(dataset: xarray.Dataset, path: str | Path) -> Path:
     return Path(path)
 
 
+def write_text(text: str, path: str | Path) -> Path:
+    """Write `text` to `path`, all of it or nothing.
+
+    Raises:
+        InputError: The file cannot be put there.
+    """
+    with replacing(path) as name:
+        Path(name).write_text(text, encoding="utf-8")
+    return Path(path)
+
+
 def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)

@@ -130,6 +130,8 @@ def method_name(method: Kinetic | Macroscopic) -> str:
     words = f"{method.kind}, scheme {method.scheme}"
     if method.scheme == 3 and method.coupling != "cell":
         words += f" by {method.coupling}"
+    if method.order != 1:
+        words += f", order {method.order}"
     if isinstance(method, Kinetic):
         words += f", {method.velocity.words}"
         if method.equilibrium != "cell-average":

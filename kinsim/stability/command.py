@@ -34,7 +34,7 @@ def atlas(
     from ..plot import check_picture
     from ..progress import Watched
     from ..read import read_method
-    from ..report import atlas_report
+    from ..report_many import atlas_report
     from ..shell import keep_apart
     from ..store import check_destination, write_netcdf
     from .atlas import atlas

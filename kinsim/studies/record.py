@@ -18,7 +18,7 @@ from ..run import Run
 from ..simulate import Progress, simulate
 from ..store import replacing
 from ..watch.ledger import COLUMNS, DENSITY_COLUMNS
-from .member import Member
+from .member import ONCE, Member
 
 LARGEST = {"u_max", "courant", "iterations", "residual"}
 LEAST = {"h_min", "f_min"}
@@ -37,9 +37,10 @@ def perform(member: Member, progress: Progress | None = None) -> Record:
     """Run a member; whatever goes wrong becomes its verdict."""
     asked = member.request
     began = time.perf_counter()
-    if asked.traced:
-        tracemalloc.start()
     try:
+        if asked.traced:
+            simulate(member.scene, member.method, member.clock, ONCE, force=asked.force)  # compiling takes memory, too
+            tracemalloc.start()
         run = simulate(
             member.scene, member.method, member.clock, asked.save_every, force=asked.force, progress=progress
         )

@@ -1,0 +1,86 @@
+"""What errors are measured against: the exact solution that a scene has, or the second order on much finer cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..balance.stages import Array
+from ..errors import InputError
+from ..exact.of_scene import exact_of
+from ..method import Macroscopic
+from ..model.cells import Cells
+from ..scene import Scene
+from ..studies.study import study
+from .pace import finer, steady
+
+FINER = 4
+"""The reference has so many times the cells of the finest method that it judges."""
+
+SECOND = Macroscopic(4, order=2)
+COURANT = 0.4
+
+
+@dataclass(frozen=True, eq=False)
+class Judge:
+    """Heights at the end of a run.
+
+    Attributes:
+        what: What they are, in words.
+        edges: Edges of cells, shape (n + 1,).
+        content: Mass to the left of each edge, shape (n + 1,).
+        error: L1(h) of a reference to the one on half its cells, over the mass; 0 for an exact solution.
+    """
+
+    what: str
+    edges: Array
+    content: Array
+    error: float
+
+    def averages(self, cells: Cells) -> Array:
+        """Heights averaged over `cells`."""
+        edges = np.linspace(cells.left, cells.right, cells.count + 1)
+        averages: Array = np.diff(np.interp(edges, self.edges, self.content)) / cells.dx
+        return averages
+
+
+def judge(scene: Scene, end: float, finest: float, **options: Any) -> Judge:
+    """The judge of methods on at most `finest` times the cells of `scene`; `options` are those of a study."""
+    exact = exact_of(scene)
+    if exact is not None:
+        cells = finer(scene, finest).cells
+        try:
+            return _judge("the exact solution", cells, exact.averages(cells, end)[0], 0.0)
+        except InputError:  # it ends before
+            pass
+    scenes = [finer(scene, finest * factor) for factor in (FINER // 2, FINER)]
+    over: dict[str, list[Any]] = {
+        "cells.count": [one.cells.count for one in scenes],
+        "clock": [steady(one, SECOND, COURANT, end) for one in scenes],
+    }
+    found = study(scene, SECOND, over["clock"][0], over, paired=True, **options)
+    if not (found["t"] == end).all():
+        raise InputError(f"trade: the reference stops: {found['verdict'].values[-1]}; take a scene that ends well")
+    half, whole = (found["h"].values[k, : one.cells.count] for k, one in enumerate(scenes))
+    made = _judge(f"second order on {scenes[1].cells.count} cells", scenes[1].cells, whole, 0.0)
+    apart = float(np.abs(made.averages(scenes[0].cells) - half).sum() * scenes[0].cells.dx)
+    return _judge(made.what, scenes[1].cells, whole, apart / mass_of(scene))
+
+
+def _judge(what: str, cells: Cells, h: Array, error: float) -> Judge:
+    edges = np.linspace(cells.left, cells.right, cells.count + 1)
+    return Judge(what, edges, np.concatenate([[0.0], np.cumsum(h) * cells.dx]), error)
+
+
+def mass_of(scene: Scene) -> float:
+    """Mass at the start, the unit of errors.
+
+    Raises:
+        InputError: There is none.
+    """
+    mass = float(scene.initial()[0].sum() * scene.cells.dx)
+    if not mass > 0.0:
+        raise InputError("trade: there is no mass in the scene; take a heap that is not empty")
+    return mass
