@@ -32,6 +32,9 @@ from .stability.atlas import atlas as atlas
 from .step import Step as Step
 from .step import step as step
 from .studies.study import study as study
+from .trades.advise import advise as advise
+from .trades.budget import budget as budget
+from .trades.choose import choose as choose
 from .trades.family import Choice as Choice
 from .trades.trade import trade as trade
 from .watch.dump import Dump as Dump

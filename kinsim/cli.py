@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .commands import sweep, trade
+from .commands import advise, budget, sweep, trade
 from .errors import InputError
-from .shell import EXIT_CODES, Force, MethodKind, SceneName, Settings, complain, keep_apart, read_scene, told
+from .shell import EXIT_CODES, Force, MethodKind, Quiet, SceneName, Settings, complain, keep_apart, read_scene, told
 from .stability.command import atlas
 
 if TYPE_CHECKING:
+    from .method import Kinetic, Macroscopic
+    from .progress import Watched
     from .read import SceneFile
+    from .trades.choose import Chosen
     from .watch.dump import Dump
 
 app = typer.Typer(
@@ -92,7 +95,11 @@ def run(
     resume: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Go on with a run that was put down, bit for bit.")
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")] = False,
+    accuracy: Annotated[
+        float | None,
+        typer.Option(metavar="EPS", help="Pick the cheapest velocity nodes: L1(h) to the closed form below EPS mass."),
+    ] = None,
+    quiet: Quiet = False,
     force: Force = False,
 ) -> None:
     """Run a scene, and say how it ended.
@@ -106,7 +113,7 @@ def run(
     from .simulate import simulate
     from .store import check_destination
 
-    if resume and (name or method or settings or dump or causes or force or checkpoint):
+    if resume and (name or method or settings or dump or causes or force or checkpoint or accuracy is not None):
         raise InputError(f"--resume goes on with what {resume} says; beside it give --out, --plot and --density alone")
     if not (name or resume):
         raise InputError("run: name a scene (kinsim scenes lists them), or a checkpoint with --resume")
@@ -131,17 +138,20 @@ def run(
         asked, dumps = file.method, read_dumps(dump or [])
     if density and not dumps:
         raise InputError("--density draws a dump; ask for one, for example --dump every=1000")
+    chosen = None
     with Watched(quiet) as progress:
         if resume:
             ran = go_on(resume, progress=progress)
         else:
+            chosen = _picked(file, accuracy, bool(dumps or causes), progress)
+            asked = chosen.method if chosen else file.method
             ran = simulate(
                 file.scene,
-                file.method,
+                asked,
                 file.clock,
                 saved_every(file),
                 force=force,
-                dumps=[*dumps, *(_final_density(file, dumps) if out or plot or checkpoint else [])],
+                dumps=[*dumps, *(_final_density(asked, dumps) if out or plot or checkpoint else [])],
                 causes=causes,
                 checkpoint=Checkpoint(str(checkpoint), every) if checkpoint else None,
                 progress=progress,
@@ -160,8 +170,9 @@ def run(
         kept.unlink(missing_ok=True)
     if not quiet:
         from .report import causes_report, run_report
+        from .report_many import accuracy_rows
 
-        run_report(ran, asked, {"--out": out, "--plot": plot}, Path(name or "run").stem)
+        run_report(ran, asked, {"--out": out, "--plot": plot}, Path(name or "run").stem, accuracy_rows(chosen, ran))
         causes_report(ran)
     elif code:
         complain(str(ran.verdict), code)
@@ -259,17 +270,26 @@ def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file
         raise InputError(f"{name}: clock: the first step breaks the CFL bound (28); take a smaller one, or force it")
 
 
-for command in (sweep, trade, atlas):
+for command in (sweep, trade, budget, advise, atlas):
     app.command()(told()(command))
 
 
-def _final_density(file: SceneFile, dumps: list[Dump]) -> list[Dump]:
+def _picked(file: SceneFile, accuracy: float | None, grid: bool, progress: Watched) -> Chosen | None:
+    """The velocity nodes for an accuracy, if one is asked for; on a grid where f is looked at."""
+    if accuracy is None:
+        return None
+    from .trades.choose import choose
+
+    return choose(file.scene, file.method, file.clock, accuracy=accuracy, grid=grid, tell=progress.tell)
+
+
+def _final_density(method: Kinetic | Macroscopic, dumps: list[Dump]) -> list[Dump]:
     """The density after the force of the first and the last step, where there is one on a grid."""
     from .kinetic.velocity import Fitted
     from .method import Kinetic
     from .watch.dump import Dump
 
-    if isinstance(file.method, Kinetic) and not isinstance(file.method.velocity, Fitted):
+    if isinstance(method, Kinetic) and not isinstance(method.velocity, Fitted):
         taken = any(dump.name == "f" for dump in dumps)
         return [Dump(name="f_end" if taken else "f", every=2**62)]
     return []

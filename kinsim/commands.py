@@ -7,10 +7,9 @@ from typing import Annotated
 
 import typer
 
-from .shell import EXIT_CODES, Force, SceneName, Settings, keep_apart, read_scene
+from .shell import EXIT_CODES, Force, Quiet, SceneName, Settings, keep_apart, read_scene
 
 Resume = Annotated[bool, typer.Option("--resume", help="Take what was finished before, and do the rest.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")]
 
 
 def sweep(
@@ -116,3 +115,27 @@ def trade(
     plot_trade(measured, picture)
     if not quiet:
         trade_report(measured, [out, table, picture])
+
+
+def budget(name: SceneName, settings: Settings = None) -> None:
+    """Say where the error of a run comes from: velocity nodes, dx, dt, force."""
+    from .progress import Watched
+    from .report_many import budget_report
+    from .trades.budget import budget
+
+    file = read_scene(name, settings, None)
+    with Watched() as progress:
+        found = budget(file.scene, file.method, file.clock, tell=progress.tell)
+    budget_report(found, file.scene.title or name)
+
+
+def advise(name: SceneName, settings: Settings = None) -> None:
+    """Say which parts of the model a scene needs, and what each costs, from a cheap coarse run."""
+    from .progress import Watched
+    from .report_many import advice_report
+    from .trades.advise import advise
+
+    file = read_scene(name, settings, None)
+    with Watched() as progress:
+        found = advise(file.scene, file.clock, tell=progress.tell)
+    advice_report(found, file.scene.title or name)

@@ -23,12 +23,18 @@ if TYPE_CHECKING:
     import xarray
 
 
-def run_report(run: Run, asked: Kinetic | Macroscopic, files: Mapping[str, Path | None], name: str) -> None:
-    """What a run did and how it ended, where it was written or could be."""
+def run_report(
+    run: Run,
+    asked: Kinetic | Macroscopic,
+    files: Mapping[str, Path | None],
+    name: str,
+    more: Sequence[tuple[str, str]] = (),
+) -> None:
+    """What a run did and how it ended, `more` about it, where it was written or could be."""
     console = Console()
     console.print(f"[bold]{escape(run.scene.title or name)}[/]: {method_name(run.method)}", highlight=False)
     table = Table.grid(padding=(0, 2))
-    for label, value in _figures(run, asked):
+    for label, value in (*_figures(run, asked), *more):
         table.add_row(f"[dim]{label}[/]", value)
     console.print(table)
     suffixes = {"--out": ".nc", "--plot": ".png"}

@@ -14,6 +14,11 @@ from .overview import plain_table
 if TYPE_CHECKING:
     import xarray
 
+    from .run import Run
+    from .trades.advise import Advice
+    from .trades.budget import Budget
+    from .trades.choose import Chosen
+
 
 SHOWN = 40
 """Members that a table names; the file has all of them."""
@@ -80,3 +85,37 @@ def atlas_report(found: xarray.Dataset, *files: Path | None) -> None:
             console.print(escape(line), highlight=False, soft_wrap=True)
     for path in filter(None, files):
         console.print(f"written to {escape(str(path))}", highlight=False, soft_wrap=True)
+
+
+def accuracy_rows(chosen: Chosen | None, run: Run) -> list[tuple[str, str]]:
+    """What was picked and why, and what the velocity error came to be; nothing, if nothing was picked."""
+    from .trades.choose import velocity_error
+
+    if chosen is None:
+        return []
+    measured = velocity_error(run)
+    colour, word = ("green", "below") if measured <= chosen.accuracy else ("red", "above")
+    told = f"{measured:.2g} measured against the twin, predicted at most {chosen.predicted:.2g}"
+    return [
+        ("picked", escape(chosen.why)),
+        ("velocity error", f"{told}; [{colour}]{word} the {chosen.accuracy:.2g} asked for[/]"),
+    ]
+
+
+def budget_report(found: Budget, name: str) -> None:
+    """Each source of error, and the budget in words."""
+    console = Console()
+    table = plain_table("source", "L1(h) / mass", title=f"{name}: error budget, judged by {found.judge}")
+    shares = {"velocity nodes": found.velocity, "remap of the force": found.force, "dt": found.dt, "dx": found.dx}
+    for source, error in {**shares, "the whole": found.total}.items():
+        table.add_row(source, "none" if np.isnan(error) else f"{error:.3g}")
+    console.print(table)
+    console.print(found.words, highlight=False)
+
+
+def advice_report(found: Advice, name: str) -> None:
+    """What a scene needs, part by part."""
+    table = plain_table("part", "needed", "because", "costs", title=f"{name}: what it requires")
+    for part in found.parts:
+        table.add_row(part.name, "[green]yes[/]" if part.needed else "no", escape(part.because), part.costs)
+    Console().print(table)

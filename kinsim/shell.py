@@ -32,6 +32,8 @@ Settings = Annotated[
 ]
 Force = Annotated[bool, typer.Option("--force", help="Run although the CFL bound is broken.")]
 
+Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")]
+
 EXIT_CODES = {"finished": 0, "at-rest": 0, "interrupted": 130}
 """By verdict; 1 for a run that was stopped. Bad input is 2."""
 

@@ -61,7 +61,7 @@ def judge(scene: Scene, end: float, finest: float, **options: Any) -> Judge:
         "clock": [steady(one, SECOND, COURANT, end) for one in scenes],
     }
     found = study(scene, SECOND, over["clock"][0], over, paired=True, **options)
-    if not (found["t"] == end).all():
+    if not np.isclose(found["t"].to_numpy(), end).all():
         raise InputError(f"trade: the reference stops: {found['verdict'].values[-1]}; take a scene that ends well")
     half, whole = (found["h"].values[k, : one.cells.count] for k, one in enumerate(scenes))
     made = _judge(f"second order on {scenes[1].cells.count} cells", scenes[1].cells, whole, 0.0)

@@ -1,0 +1,149 @@
+"""The cheapest method whose velocity error will stay below what is asked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from ..clock import Courant, Fixed, Replay
+from ..errors import InputError
+from ..kinetic.velocity import Fitted, Uniform
+from ..measure.compare import method_name
+from ..method import Kinetic, Macroscopic
+from ..run import Run
+from ..scene import Scene
+from ..simulate import simulate
+from ..studies.member import ONCE
+from .judge import mass_of
+from .pace import end_of
+from .pilot import Pilots, kind_of, nodes, seconds_per_step
+
+FITTED = (1, 2, 3, 4, 6, 8)
+COUNTS = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512)
+FEWEST = 3
+"""So many pilots at least tell how much velocity errors change from level to level."""
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What was picked.
+
+    Attributes:
+        method: The method.
+        accuracy: What was asked.
+        predicted: Its velocity error, at most: L1(h) to the closed-form twin at the end, over the mass at the start.
+        share: Its cost per step over that of the dearest candidate.
+        why: A sentence.
+    """
+
+    method: Kinetic
+    accuracy: float
+    predicted: float
+    share: float
+    why: str
+
+
+def candidates(method: Kinetic, grid: bool = False) -> list[Kinetic]:
+    """Methods like this one that differ in their velocity nodes; fitted ones only where they can be had."""
+    found: list[Kinetic] = []
+    for velocity in (*(() if grid else map(Fitted, FITTED)), *map(Uniform, COUNTS)):
+        try:
+            found.append(replace(method, velocity=velocity))
+        except InputError:  # fitted nodes carry M itself, and some equilibria need many nodes
+            continue
+    return found
+
+
+def choose(
+    scene: Scene,
+    method: Kinetic | Macroscopic,
+    clock: Fixed | Courant,
+    *,
+    accuracy: float,
+    grid: bool = False,
+    among: Sequence[Kinetic] | None = None,
+    **options: Any,
+) -> Chosen:
+    """Pick velocity nodes for a scene: the cheapest whose velocity error is predicted to stay below `accuracy`.
+
+    Costs are measured on the scene, errors on half and a quarter of its cells (see `kinsim.trades.pilot`), from the
+    cheapest candidate on, until one will do. Candidates that the measured order of their kind rules out are left out.
+
+    Args:
+        scene: What happens.
+        method: All but its velocity nodes is kept.
+        clock: Its end is the end of the run.
+        accuracy: L1(h) to the closed-form twin at the end, over the mass at the start; > 0.
+        grid: Take a velocity grid, which shows f, and no fitted nodes.
+        among: Candidates of your own.
+        options: `keep`, `resume`, `tell`, ... of `kinsim.study`.
+
+    Raises:
+        InputError: It cannot be had; the message names the nearest that can.
+    """
+    if not isinstance(method, Kinetic):
+        raise InputError("choose: the closed form has no velocity error; leave out the accuracy, or take Kinetic")
+    if isinstance(accuracy, bool) or not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < math.inf:
+        raise InputError(f"choose: accuracy = {accuracy!r} is no error to stay below; take a number > 0, such as 1e-4")
+    rest = list(among) if among is not None else candidates(method, grid)
+    if not rest:
+        raise InputError("choose: there are no candidates; give at least one")
+    pilots = Pilots(scene, method, end_of(clock), **options)
+    cost = seconds_per_step(scene, rest, **options)
+    rest = [rest[at] for at in np.argsort(cost)]
+    cost = np.sort(cost)
+    pilots.ask(rest[:FEWEST])
+    found = _first(rest, pilots, accuracy)
+    if found is not None:
+        one, why = rest[found], _why(rest[found], accuracy, pilots, found, len(rest))
+        return Chosen(one, accuracy, pilots.predicted(one), float(cost[found] / np.nanmax(cost)), why)
+    most = {kind_of(one): one for one in sorted(rest, key=nodes)}
+    error, one = min(((pilots.predicted(one), one) for one in most.values()), key=lambda pair: pair[0])
+    if not math.isfinite(error):
+        raise InputError("choose: no pilot run came to its end; take a scene and a method that do")
+    raise InputError(
+        f"choose: a velocity error below {accuracy:.3g} cannot be had; the nearest is {error:.2g}, "
+        f"with {one.velocity.words}: ask for {_up(error):.2g}"
+    )
+
+
+def _first(ordered: Sequence[Kinetic], pilots: Pilots, accuracy: float) -> int | None:
+    """The place of the first that will do; one that was passed over is looked at where the next of its kind will."""
+    for at, one in enumerate(ordered):
+        if pilots.foreseen(one) <= accuracy and pilots.predicted(one) <= accuracy:
+            while at and pilots.predicted(ordered[at - 1]) <= accuracy:
+                at -= 1
+            return at
+    return None
+
+
+def _up(error: float) -> float:
+    """The next number of two digits that is not below."""
+    digit = 10.0 ** (math.floor(math.log10(error)) - 1)
+    return math.ceil(error / digit * (1.0 - 1e-12)) * digit
+
+
+def _why(method: Kinetic, accuracy: float, pilots: Pilots, cheaper: int, of: int) -> str:
+    before = f"the {cheaper} cheaper ones of {of} would miss it" if cheaper else f"the cheapest of {of} candidates"
+    predicted = f"predicted {pilots.predicted(method):.2g} <= {accuracy:.2g}, a margin of {pilots.margin:.2g} included"
+    return f"{method_name(method)}: {predicted}; {before}"
+
+
+def velocity_error(run: Run) -> float:
+    """What the velocity nodes of a run did: L1(h) at its end to the closed-form twin, step by step the same, over
+    the mass at the start.
+
+    Raises:
+        InputError: The run is the twin.
+    """
+    if isinstance(run.method, Macroscopic):
+        raise InputError("velocity error: the closed form has none; give a kinetic run")
+    steps = Replay(tuple(run.dt.tolist()), end=float(run.t[-1]))
+    twin = simulate(run.scene, run.method.twin, steps, ONCE)
+    if twin.verdict.kind == "interrupted":
+        raise KeyboardInterrupt
+    return float(np.abs(run.h[-1] - twin.h[-1]).sum() * run.scene.cells.dx / mass_of(run.scene))
