@@ -15,6 +15,9 @@ from .record import Record, failed, perform
 Tell = Callable[[str, float], None]
 """Called with what is under way and the share that is done."""
 
+PATIENCE = 30.0
+"""Seconds after which a scheduler that does not answer is given up."""
+
 ONE_THREAD = {f"{name}_NUM_THREADS": "1" for name in ("NUMBA", "OMP", "OPENBLAS", "MKL", "VECLIB_MAXIMUM", "NUMEXPR")}
 
 
@@ -77,7 +80,7 @@ class Cluster:
         else:
             at = self.address
         try:
-            return dask.Client(at, timeout=10)
+            return dask.Client(at, timeout=PATIENCE)
         except (OSError, ValueError, TimeoutError) as error:
             raise InputError(f"--scheduler {self.address}: cannot be reached ({error}); start one there") from None
 
