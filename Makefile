@@ -4,12 +4,13 @@ PYTHON ?= python3
 BIN := .venv/bin
 SHELL := /bin/sh
 
-.PHONY: help demo test check bench clean
+.PHONY: help demo test check bench trade clean
 
 help:
 	@echo "make demo    install, run the silo with both wings, write out/silo.nc and out/silo.png"
 	@echo "make test    install, lint, type-check, run all tests"
 	@echo "make bench   install, measure speed and memory against the targets, write out/benchmarks.json"
+	@echo "make trade   install, measure speed against accuracy on the five scenes, rewrite docs/trade.md (an hour)"
 	@echo "make clean   remove the environment and everything that was made"
 
 .venv/installed: pyproject.toml
@@ -33,6 +34,11 @@ test: check
 
 bench: .venv/installed
 	$(BIN)/python benchmarks/run.py
+
+trade: .venv/installed
+	$(BIN)/python validation/trade.py --full
+	$(BIN)/python validation/trade_prediction.py --full
+	$(BIN)/python .ci/tables.py out/validation docs/trade.md
 
 clean:
 	rm -rf .venv out build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis

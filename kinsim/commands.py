@@ -94,8 +94,7 @@ def trade(
     All members end when the scene's clock does, each with the steps of its own Courant number. What is measured is
     kept at once in TRADE.NC.members; after Ctrl-C, --resume does the rest.
     """
-    from .plot import check_picture
-    from .plot.trade import plot_trade
+    from .plot import check_picture, plot_trade
     from .progress import Watched
     from .report_many import trade_report
     from .store import check_destination, write_netcdf, write_text

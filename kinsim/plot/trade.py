@@ -25,6 +25,10 @@ ORDERS = {"sampled": -1.5, "cell average": -2.0}
 """Of half-range fluxes in the number of nodes."""
 
 
+ENOUGH = 0.1
+"""A velocity error of this share of the error of dx and dt is ringed."""
+
+
 def plot_trade(measured: xarray.Dataset, path: str | Path) -> Path:
     """Draw `kinsim.trade(...)`: total error against wall time, and velocity error against nodes.
 
@@ -64,8 +68,8 @@ def _costs(measured: xarray.Dataset, axes: Any) -> None:
     )
     for one in np.flatnonzero(measured["knee"].to_numpy()):
         axes.scatter(time[one], error[one], s=260, facecolors="none", edgecolors="black", linewidths=1.6, zorder=4)
-        axes.annotate(f"knee: {_short(measured.isel(member=one))}", (time[one], error[one]), (-14, -22),
-                      textcoords="offset points", ha="right", fontsize=9)  # fmt: skip
+        axes.scatter([], [], s=90, facecolors="none", edgecolors="black", linewidths=1.6,
+                     label=f"knee: {_short(measured.isel(member=one))}")  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="wall time of the run in s, median and range")
     axes.set_ylabel("total error: L1(h) at the end / mass")
     axes.set_title(f"error against cost; judged by {measured.attrs['judge']}", loc="left", fontsize=10)
@@ -74,6 +78,7 @@ def _costs(measured: xarray.Dataset, axes: Any) -> None:
 
 def _nodes(measured: xarray.Dataset, axes: Any) -> None:
     line = measured["line"].to_numpy()
+    closed = measured["total_error"].to_numpy()[line == "closed form"]
     for name in ("cell average", "sampled", "fitted"):
         of = measured.isel(member=np.flatnonzero(line == name)).dropna("member", subset=["velocity_error"])
         if not of.sizes["member"]:
@@ -81,22 +86,25 @@ def _nodes(measured: xarray.Dataset, axes: Any) -> None:
         colour, mark, _ = LOOKS[name]
         n, error = of["nodes"].to_numpy(), of["velocity_error"].to_numpy()
         axes.plot(n, error, marker=mark, markersize=5, color=colour, label=f"{_words(name)}{_order(name, n, error)}")
+        paid = np.flatnonzero(error <= ENOUGH * closed[0]) if closed.size else ()
+        for one in paid[:1]:
+            axes.scatter(n[one], error[one], s=150, facecolors="none", edgecolors=colour, linewidths=1.5, zorder=4)
         if name in ORDERS and n.size > 1:
             fair = np.exp(np.mean(np.log(error) - ORDERS[name] * np.log(n)))
             axes.plot(n, fair * n ** ORDERS[name], ":", color=colour, linewidth=1.2)
-    closed = measured["total_error"].to_numpy()[line == "closed form"]
     if closed.size:
         axes.axhline(closed[0], color="black", linewidth=1)
-        axes.annotate("error of dx and dt (closed form): nodes below it pay no more", (0.01, closed[0]), (0, 4),
-                      xycoords=("axes fraction", "data"), textcoords="offset points", fontsize=8.5)  # fmt: skip
+        axes.annotate("error of dx and dt (closed form)", (0.01, closed[0]), (0, 4), xycoords=("axes fraction", "data"),
+                      textcoords="offset points", fontsize=8.5)  # fmt: skip
     axes.set_xscale("log", base=2)
     axes.set_yscale("log")
     axes.set_xlabel("velocity nodes n")
     axes.set_ylabel("velocity error: L1(h) to the closed-form twin / mass")
-    axes.set_title("what the velocity grid adds; dotted: the orders of the fluxes", loc="left", fontsize=10)
+    axes.set_title("what velocity nodes add", loc="left", fontsize=10)
+    axes.scatter([], [], s=90, facecolors="none", edgecolors="#777777", label="a tenth of dx and dt: more pay no more")
+    axes.plot([], [], ":", color="#777777", label="orders of the fluxes")
     axes.xaxis.set_major_formatter("{x:g}")
-    if axes.get_legend_handles_labels()[0]:
-        axes.legend(fontsize=8, frameon=False)
+    axes.legend(fontsize=8, frameon=False)
 
 
 def _order(name: str, n: np.ndarray, error: np.ndarray) -> str:

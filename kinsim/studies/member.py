@@ -64,9 +64,9 @@ class Refused:
 
 @cache
 def code_stamp() -> str:
-    """The version, and a hash of every source file: what other code computed is not taken for this one's."""
+    """The version, and a hash of every source file but of pictures: what other code computed is not taken for this."""
     package = Path(__file__).parent.parent
     digest = hashlib.sha256()
-    for path in sorted(package.rglob("*.py")):
+    for path in sorted(set(package.rglob("*.py")) - set((package / "plot").iterdir())):
         digest.update(path.relative_to(package).as_posix().encode() + b"\0" + path.read_bytes())
     return f"{version('kinsim')} {digest.hexdigest()}"
