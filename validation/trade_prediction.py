@@ -7,14 +7,13 @@ prediction is held against the run that it is about, on the five scenes of the p
 ground, jumps and humps, flat and steep, frictionless to sticky. Errors below the rounding of all steps count as that.
 
 What is chosen is held against the cheapest member of the family that really stays below the accuracy asked for, by the
-cost of a step that the choice itself measured; the table has the ratios. `--full` takes the paper's cells and twenty
-random scenes.
+cost of a step that the choice itself measured; the table has the ratios. `--full` takes all five scenes and twenty
+random ones, the small size two and two of them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 
 import numpy as np
 from claims import Chapter, run
@@ -54,7 +53,11 @@ def main(chapter: Chapter) -> None:
     told, found = np.array(predicted), np.array(measured)
     known = np.isfinite(told) & np.isfinite(found)
     ratio = np.where(known, told, 1.0) / np.where(known, found, 1.0)
-    chapter.claim("share of full runs without a prediction, since a pilot run stopped", 1.0 - known.mean(), high=0.02)
+    chapter.claim(
+        "share of full runs without a prediction, since a pilot run stopped",
+        1.0 - known.mean(),
+        high=0.02 if chapter.full else 0.05,
+    )
     chapter.claim("share of predictions that bound the error of the full run", np.mean(ratio[known] >= 1.0), low=0.95)
     chapter.claim("predicted over measured velocity error, least", ratio.min(), low=0.1)
     chapter.claim("predicted over measured velocity error, largest", ratio.max(), high=10.0)
@@ -79,13 +82,13 @@ def main(chapter: Chapter) -> None:
 
 def scenes(full: bool) -> Iterator[tuple[str, Scene, float]]:
     """The five of the paper, and random ones, each with its end."""
-    for name in ("riemann", "silo", "silo-incline", "parabola", "sine"):
+    names = ("riemann", "parabola", "silo", "silo-incline", "sine")
+    for name in names if full else names[:2]:
         scene, _, clock = load_scene(name)
-        count = scene.cells.count if full else scene.cells.count // 2
-        yield name, replace(scene, cells=replace(scene.cells, count=count)), end_of(clock)
+        yield name, scene, end_of(clock)
     rng = np.random.default_rng(7)
     for number in range(20 if full else 2):
-        yield f"random {number + 1}", *random_scene(rng, 240 if full else 120)
+        yield f"random {number + 1}", *random_scene(rng, 240)
 
 
 def choices(scene: Scene, pace: Fixed, found: np.ndarray, full: bool) -> Iterator[list[object]]:
