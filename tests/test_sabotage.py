@@ -39,6 +39,7 @@ def validated(tmp_path: Path, sabotage: str = "") -> tuple[int, str, str]:
     command = [sys.executable, "-P", "-m", "kinsim", "validate", "--only", "canary", "--out", str(tmp_path / "out")]
     done = subprocess.run(command, cwd=HERE.parent, env=env, capture_output=True, text=True, check=False)
     assert "Traceback" not in done.stderr
+    assert done.returncode in (0, 1), f"ended with {done.returncode}: {done.stdout}{done.stderr}"
     return done.returncode, done.stdout, (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
 
 
