@@ -10,7 +10,7 @@ help:
 	@echo "make demo    install, run the silo with both wings, write out/silo.nc and out/silo.png"
 	@echo "make test    install, lint, type-check, run all tests"
 	@echo "make bench   install, measure speed and memory against the targets, write out/benchmarks.json"
-	@echo "make trade   install, measure speed against accuracy on the five scenes, rewrite docs/trade.md (an hour)"
+	@echo "make trade   install, measure speed against accuracy on the five scenes, rewrite docs/trade.md (minutes)"
 	@echo "make clean   remove the environment and everything that was made"
 
 .venv/installed: pyproject.toml
