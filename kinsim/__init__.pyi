@@ -4,6 +4,7 @@ from .checkpoint import Checkpoint as Checkpoint
 from .clock import Courant as Courant
 from .clock import Fixed as Fixed
 from .errors import InputError as InputError
+from .film.animate import animate as animate
 from .kinetic.velocity import Fitted as Fitted
 from .kinetic.velocity import Uniform as Uniform
 from .kinetic.velocity import Window as Window

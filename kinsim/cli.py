@@ -9,6 +9,7 @@ import typer
 
 from .commands import advise, budget, sweep, trade
 from .errors import InputError
+from .film.command import animate
 from .shell import EXIT_CODES, Force, MethodKind, Quiet, SceneName, Settings, complain, keep_apart, read_scene, told
 from .stability.command import atlas
 
@@ -270,7 +271,7 @@ def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file
         raise InputError(f"{name}: clock: the first step breaks the CFL bound (28); take a smaller one, or force it")
 
 
-for command in (sweep, trade, budget, advise, atlas):
+for command in (sweep, trade, budget, advise, atlas, animate):
     app.command()(told()(command))
 
 

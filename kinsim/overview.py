@@ -51,11 +51,15 @@ def first_courant(file: SceneFile) -> float:
     return first_speed(file) * clock.dt / file.cells.dx if isinstance(clock, Fixed) else clock.number
 
 
+def first_steps(file: SceneFile) -> float:
+    """So many steps it takes, as far as the start tells."""
+    clock = file.clock
+    return clock.steps if isinstance(clock, Fixed) else clock.end * first_speed(file) / (clock.number * file.cells.dx)
+
+
 def saved_every(file: SceneFile) -> int:
     """So many steps from one saved state to the next make about `ROWS` of them."""
-    clock = file.clock
-    steps = clock.steps if isinstance(clock, Fixed) else clock.end * first_speed(file) / (clock.number * file.cells.dx)
-    return max(1, int(min(steps / ROWS, 1e9)))
+    return max(1, int(min(first_steps(file) / ROWS, 1e9)))
 
 
 def filled_in(file: SceneFile, keys: Mapping[str, Any]) -> None:

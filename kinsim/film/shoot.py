@@ -1,0 +1,53 @@
+"""A scene is run for a film: the density kept at every frame, and beside it the twin in closed form."""
+
+from __future__ import annotations
+
+import math
+
+from ..clock import AnyClock, Courant, Replay
+from ..kinetic.velocity import Uniform
+from ..memory import require
+from ..method import Kinetic
+from ..overview import first_speed, first_steps
+from ..read import SceneFile
+from ..run import Run
+from ..simulate import Progress, simulate
+from ..watch.dump import Dump
+from .reel import carries
+
+
+def shoot(file: SceneFile, frames: int, force: bool = False, progress: Progress | None = None) -> list[Run]:
+    """The run, and after a kinetic one that of its twin at the same times; about `frames` states are kept.
+
+    Raises:
+        InputError: The first step would break the CFL bound, or memory cannot hold the densities.
+        KeyboardInterrupt: It was interrupted.
+    """
+    every = max(1, math.ceil(min(first_steps(file) / (frames - 1), 1e9)))
+    dumps = [Dump(every=every)] if carries(file.method) else []
+    if dumps:
+        require(16.0 * frames * file.cells.count * _nodes(file), f"the density in {frames} frames")
+    runs: list[Run] = []
+    for method in (file.method, *([file.method.twin] if isinstance(file.method, Kinetic) else [])):
+        clock = _again(runs[0]) if runs else file.clock
+        runs.append(simulate(file.scene, method, clock, every, force=force, dumps=dumps, progress=progress))
+        if runs[-1].verdict.kind == "interrupted":
+            raise KeyboardInterrupt
+        if not runs[-1].steps:
+            break
+        dumps = []
+    return runs
+
+
+def _again(run: Run) -> AnyClock:
+    """The same steps once more."""
+    if isinstance(run.clock, Courant):
+        return Replay(tuple(run.dt.tolist()), end=float(run.t[-1]))
+    return run.clock  # type: ignore[return-value]
+
+
+def _nodes(file: SceneFile) -> int:
+    velocity = file.method.velocity  # type: ignore[union-attr]
+    if isinstance(velocity, Uniform):
+        return velocity.count
+    return int(velocity.grid(first_speed(file)).count)  # type: ignore[union-attr]
