@@ -271,6 +271,25 @@ def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file
         raise InputError(f"{name}: clock: the first step breaks the CFL bound (28); take a smaller one, or force it")
 
 
+@app.command()
+@told()
+def schema(
+    out: Annotated[Path | None, typer.Option("-o", "--out", metavar="FILE", help="Write it here.")] = None,
+) -> None:
+    """Print the JSON schema of scene files, with which editors complete their keys."""
+    import json
+
+    from .schema import scene_schema
+    from .store import replacing
+
+    text = json.dumps(scene_schema(), indent=1, ensure_ascii=False)
+    if out is None:
+        typer.echo(text)
+        return
+    with replacing(out) as name:
+        Path(name).write_text(f"{text}\n", encoding="utf-8")
+
+
 for command in (sweep, trade, budget, advise, atlas, animate):
     app.command()(told()(command))
 
