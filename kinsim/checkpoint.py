@@ -48,6 +48,10 @@ class Keeper:
     def __init__(self, checkpoint: Checkpoint, about: Mapping[str, Any]) -> None:
         self._path, self._every = check_destination(checkpoint.path), checkpoint.every
         self._about = {**about, "every": checkpoint.every}
+        if self._path.exists() and not _of_this_run(self._path, self._about):
+            raise InputError(
+                f"{checkpoint.path}: exists, and is no checkpoint of this run; name another file, or remove it"
+            )
         self._next = time.monotonic() + self._every
         self.trouble = ""
 
@@ -78,6 +82,14 @@ class Nowhere:
         pass
 
 
+def _of_this_run(path: Path, about: Mapping[str, Any]) -> bool:
+    try:
+        kept, _ = read_checkpoint(path)
+        return bool({**kept, "every": None} == json.loads(json.dumps({**about, "every": None})))
+    except InputError:
+        return False
+
+
 def write_checkpoint(path: Path, about: Mapping[str, Any], kept: Kept) -> None:
     """Write what a run is, and how it stands, with a checksum in front.
 
@@ -98,9 +110,11 @@ def read_checkpoint(path: str | Path) -> tuple[dict[str, Any], Kept]:
         InputError: The file is not there, is no checkpoint, or is damaged.
     """
     try:
+        if Path(path).exists() and not Path(path).is_file():
+            raise InputError(f"{path}: is no ordinary file; name a checkpoint file")
         whole = Path(path).read_bytes()
     except OSError as error:
-        raise InputError(f"{path}: cannot be read ({error.strerror}); name a checkpoint file") from None
+        raise InputError(f"{str(path)[:80]}: cannot be read ({error.strerror}); name a checkpoint file") from None
     if not whole.startswith(MAGIC):
         raise InputError(f"{path}: is no checkpoint of this version of kinsim; name the file given to --checkpoint")
     digest, _, content = whole[len(MAGIC) :].partition(b"\n")

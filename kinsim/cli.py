@@ -106,7 +106,7 @@ def run(
     """Run a scene, and say how it ended.
 
     Exit code: 0 if it went to its end, 1 if it was stopped, 2 if the input is bad, 130 if it was interrupted. A
-    checkpoint is removed when the run went to its end and all its files are written.
+    checkpoint is removed when the run went to its end and is written to --out.
     """
     from .overview import saved_every
     from .progress import Watched
@@ -165,9 +165,10 @@ def run(
         plot_density(ran, density, dumps[0].name, cut or ())
     code = EXIT_CODES.get(ran.verdict.kind, 1)
     kept = checkpoint or resume
-    if kept and ran.verdict.kind == "interrupted":
-        typer.echo(f"put down; go on with: kinsim run --resume {kept}", err=True)
-    elif kept and code == 0:
+    if kept and ran.verdict.kind == "interrupted" and kept.exists():
+        files = "".join(f" {option} {file}" for option, file in (("--out", out), ("--plot", plot)) if file)
+        typer.echo(f"put down; go on with: kinsim run --resume {kept}{files}", err=True)
+    elif kept and out and code == 0:
         kept.unlink(missing_ok=True)
     if not quiet:
         from .report import causes_report, run_report

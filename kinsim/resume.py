@@ -6,6 +6,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from .checkpoint import Checkpoint, Keeper, Kept, read_checkpoint
@@ -23,6 +24,7 @@ KINDS: dict[str, Any] = {
 }  # fmt: skip
 
 
+@np.errstate(all="ignore")
 def resume(path: str | Path, *, progress: Progress | None = None) -> Run:
     """Go on with a run that was put down in the file `path`, to the very bits it would have come to without a stop.
 

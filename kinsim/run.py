@@ -91,6 +91,7 @@ class Run:
         return self.scene.x
 
     @property
+    @np.errstate(over="ignore")
     def u(self) -> Array:
         """Velocity q/h, 0 where dry, shape (nt, nx)."""
         return np.divide(self.q, self.h, out=np.zeros_like(self.q), where=self.h > 0)

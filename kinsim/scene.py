@@ -69,6 +69,8 @@ class Scene:
     def initial(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Initial h and q = h u, the values at the cell centres, each of shape (nx,).
 
+        A height below the smallest normal number, 2.2e-308, is dry.
+
         Raises:
             InputError: A height is negative, or a value is not finite (the message names the place).
         """
@@ -81,4 +83,5 @@ class Scene:
             if bad.any():
                 i = int(np.flatnonzero(bad)[0])
                 raise InputError(f"heap: {name} {(h if name == 'height' else u)[i]:g} at x = {x[i]:g}; {remedy}")
-        return np.asarray(h, dtype=float), np.asarray(h * u, dtype=float)
+        h = np.where(h < np.finfo(float).tiny, 0.0, h)  # no velocity can be told from a height with few digits
+        return h, np.asarray(h * u, dtype=float)

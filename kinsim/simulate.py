@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -19,7 +20,9 @@ from .errors import InputError
 from .interrupt import Deferred
 from .kinetic.velocity import Uniform, Window
 from .kinetic.wing import Density
+from .memory import require
 from .method import Kinetic, Macroscopic
+from .model.heap import Profile, Table
 from .run import Run, Verdict, VerdictKind, description
 from .scene import Scene
 from .sleep import Awake
@@ -42,6 +45,7 @@ SHORTEST = 1e-9
 """Steps shorter than this share of the whole time are not worth taking."""
 
 
+@np.errstate(all="ignore")  # a number that is none stops the run, with a verdict
 def simulate(
     scene: Scene,
     method: Kinetic | Macroscopic,
@@ -175,6 +179,9 @@ class Loop:
         if any(dump.stage == "held" for dump in dumps) and type(self.stepper.scheme) is not Held:
             raise InputError('a dump of the stage "held" needs faces that hold: take scheme 4 of order 1')
         self.recorders = [Recorder(dump, self.scene, density) for dump in dumps]
+        for recorder in self.recorders:
+            rows = recorder.rows(self.clock.steps if isinstance(self.clock, Fixed) else 1)
+            require(rows * 8.0 * recorder.width * density.grid.count, f"{rows} rows of the dump {recorder.dump.name!r}")
         if causes:
             self.causes = Causes(self.scene, self.stepper, density)
 
@@ -183,7 +190,6 @@ class Loop:
         self.ledger.start(self.h, self.q)
         self._save()
 
-    @np.errstate(all="ignore")  # a number that is none stops the run, with a verdict
     def run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
         """Step until the clock or a fault ends it."""
         scene, clock, stepper, awake = self.scene, self.clock, self.stepper, self.awake
@@ -268,8 +274,9 @@ class Loop:
     def about(self) -> dict[str, Any]:
         """What is run, and what is asked of it."""
         dumps = [TypeAdapter(Dump).dump_python(recorder.dump, mode="json") for recorder in self.recorders]
+        described = description(_on_its_own(self.scene), self.method, self.clock)
         return {
-            "version": version("kinsim"), **description(self.scene, self.method, self.clock), "dumps": dumps,
+            "version": version("kinsim"), **described, "dumps": dumps,
             "save_every": int(self.save_every), "force": self.force, "causes": self.causes is not None,
         }  # fmt: skip
 
@@ -377,6 +384,14 @@ class Loop:
         self.states.append((self.h.copy(), self.q.copy()))
         if self.causes:
             self.causes.save(self.t, self.h, self.q)
+
+
+def _on_its_own(scene: Scene) -> Scene:
+    """The scene, with what it reads from a file as values of its own."""
+    if not isinstance(scene.heap, Table):
+        return scene
+    h, u = scene.heap(scene.x)
+    return replace(scene, heap=Profile(h, u))
 
 
 def _falling(scene: Scene, clock: AnyClock) -> float:

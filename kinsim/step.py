@@ -65,6 +65,7 @@ class Step:
     books: Books
 
 
+@np.errstate(all="ignore")
 def step(scene: Scene, method: Kinetic | Macroscopic, h: Array, q: Array, dt: float) -> Step:
     """One step without a run: every stage as arrays of its own.
 

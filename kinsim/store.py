@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import tempfile
 from collections.abc import Iterator
@@ -23,12 +24,15 @@ def check_destination(path: str | Path) -> Path:
     """
     path = Path(path)
     folder = path.parent
-    if not folder.is_dir():
-        raise InputError(f"{path}: the folder {folder} does not exist; create it first")
-    if path.is_dir():
-        raise InputError(f"{path}: is a folder; name a file in it")
-    if path.exists() and not path.is_file():
-        raise InputError(f"{path}: is a device or a pipe; name an ordinary file")
+    try:
+        if not folder.is_dir():
+            raise InputError(f"{path}: the folder {folder} does not exist; create it first")
+        if path.is_dir():
+            raise InputError(f"{path}: is a folder; name a file in it")
+        if path.exists() and not path.is_file():
+            raise InputError(f"{path}: is a device or a pipe; name an ordinary file")
+    except OSError as error:
+        raise InputError(f"{str(path)[:80]}: is no name for a file ({error.strerror}); take another") from None
     try:
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
@@ -62,8 +66,10 @@ def write_netcdf(dataset: xarray.Dataset, path: str | Path) -> Path:
     Raises:
         InputError: The file cannot be put there.
     """
+    packed = io.BytesIO()  # HDF5 does not survive a disk that is full
+    dataset.to_netcdf(packed, engine="h5netcdf", invalid_netcdf=False)
     with replacing(path) as name:
-        dataset.to_netcdf(name, engine="h5netcdf", invalid_netcdf=False)
+        Path(name).write_bytes(packed.getbuffer())
     return Path(path)
 
 

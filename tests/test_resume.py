@@ -29,6 +29,7 @@ from kinsim import (
     Kinetic,
     Macroscopic,
     Run,
+    Table,
     Uniform,
     Window,
     load_scene,
@@ -188,7 +189,7 @@ import resource, sys
 from kinsim import *
 scene = load_scene("silo")[0]
 checkpoint = Checkpoint(sys.argv[1], every=0)
-simulate(scene, Macroscopic(), Fixed(0.01, 3), checkpoint=checkpoint)
+simulate(scene, Macroscopic(), Fixed(0.01, 20), checkpoint=checkpoint)
 resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))
 print(simulate(scene, Macroscopic(), Fixed(0.01, 20), checkpoint=checkpoint).verdict)
 """
@@ -200,7 +201,7 @@ def test_a_full_disk_costs_the_new_file_alone(tmp_path: Path) -> None:
     done = subprocess.run([sys.executable, "-c", FULL, str(path)], capture_output=True, text=True, check=True)
     assert "finished" in done.stdout
     assert "cannot be written" in done.stdout
-    assert resume(path).steps == 3
+    assert resume(path).steps == 20
     assert [file.name for file in tmp_path.iterdir()] == ["c"]
 
 
@@ -238,3 +239,63 @@ def test_from_the_shell(tmp_path: Path) -> None:
     nothing = CliRunner().invoke(app, ["run"])
     assert nothing.exit_code == 2
     assert "--resume" in nothing.stderr
+
+
+def test_nothing_of_somebody_elses_is_touched(tmp_path: Path) -> None:
+    """A file that is no checkpoint of this run is neither written nor removed; without --out a checkpoint stays."""
+    file = tmp_path / "thesis.tex"
+    file.write_text("precious")
+    small = ["run", "silo", "--method", "macroscopic", "--set", "clock.steps=40", "--quiet", "--checkpoint", str(file)]
+    refused = CliRunner().invoke(app, small)
+    assert refused.exit_code == 2
+    assert "is no checkpoint of this run" in refused.stderr
+    assert file.read_text() == "precious"
+    file.unlink()
+    assert CliRunner().invoke(app, [*small, "--every", "0"]).exit_code == 0
+    assert file.exists()
+    other = [*small, "--every", "0", "--set", "clock.steps=50"]
+    assert CliRunner().invoke(app, other).exit_code == 2
+    assert CliRunner().invoke(app, [*small, "--every", "0", "--out", str(tmp_path / "a.nc")]).exit_code == 0
+    assert not file.exists()
+
+
+def test_a_table_is_needed_no_more(tmp_path: Path) -> None:
+    """What was read from a file is in the checkpoint."""
+    table = tmp_path / "t.csv"
+    table.write_text("x,h\n-8,0.3\n0,2.0\n8,0.3\n")
+    scene = replace(SILO, heap=Table(str(table)))
+    whole = simulate(scene, Macroscopic(), Fixed(0.01, 20), 5, checkpoint=Checkpoint(str(tmp_path / "c"), every=0))
+    table.unlink()
+    np.testing.assert_array_equal(resume(tmp_path / "c").h, whole.h)
+
+
+def test_strange_places_get_one_line(tmp_path: Path) -> None:
+    """Devices, and names that are too long."""
+    for path in ("/dev/zero", str(tmp_path / ("x" * 300))):
+        with pytest.raises(InputError):
+            resume(path)
+        with pytest.raises(InputError):
+            simulate(SILO, Macroscopic(), Fixed(0.01, 5), checkpoint=Checkpoint(path))
+
+
+ROOM = """
+import resource, signal, sys
+from kinsim import *
+run = simulate(load_scene("silo")[0], Macroscopic(), Fixed(0.01, 50), 1)
+resource.setrlimit(resource.RLIMIT_FSIZE, (20000, 20000))
+try:
+    run.to_netcdf(sys.argv[1])
+except InputError as error:
+    print(error)
+"""
+
+
+def test_a_full_disk_for_a_run_is_one_line_and_no_crash(tmp_path: Path) -> None:
+    """HDF5 itself would end the process with a fault of memory."""
+    done = subprocess.run(
+        [sys.executable, "-c", ROOM, str(tmp_path / "a.nc")], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0
+    assert "cannot be written" in done.stdout
+    assert not done.stderr
+    assert not list(tmp_path.iterdir())

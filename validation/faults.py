@@ -20,7 +20,7 @@ from tempfile import TemporaryDirectory
 
 from claims import Chapter, run
 
-from kinsim import Cells, Checkpoint, Fixed, InputError, Kinetic, Macroscopic, Table, Uniform, load_scene, simulate
+from kinsim import Cells, Checkpoint, Fixed, InputError, Kinetic, Macroscopic, Run, Table, Uniform, load_scene, simulate
 from kinsim import resume as go_on
 from kinsim.read import built_in, check
 
@@ -41,7 +41,7 @@ def main(chapter: Chapter) -> None:
             "tables, mutated": tables(folder, many // 10),
             "checkpoints, truncated or with a byte changed": damaged(folder, many // 10),
             "kill -9 at a random moment, then resumed": killed(folder, 20 if chapter.full else 6),
-            "disk full while a checkpoint is written": full_disk(folder, 20 if chapter.full else 3),
+            "disk full while a checkpoint and a run are written": full_disk(folder, 20 if chapter.full else 3),
             "two runs that write the same file": writers(folder, 20 if chapter.full else 3),
         }
     for what, (injected, _, lost) in found.items():
@@ -162,7 +162,7 @@ def full_disk(folder: Path, many: int) -> Counted:
     path, lost = folder / "full", 0
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     for number in range(many):
-        simulate(SILO, Macroscopic(), Fixed(0.01, 3), checkpoint=Checkpoint(str(path), every=0))
+        simulate(SILO, Macroscopic(), Fixed(0.01, 5), checkpoint=Checkpoint(str(path), every=0))
         before = path.read_bytes()
         usual = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (1000 + 100 * number, hard))
@@ -173,7 +173,23 @@ def full_disk(folder: Path, many: int) -> Counted:
             signal.signal(signal.SIGXFSZ, usual)
         said = "cannot be written" in str(ended.verdict)
         lost += not (ended.steps == 5 and said and path.read_bytes() == before)
+        lost += not refused_when_full(ended, folder / "full.nc", 1000 + 100 * number)
     return many, 0, lost
+
+
+def refused_when_full(ended: Run, path: Path, most: int) -> bool:
+    """A run that does not fit: one line, nothing left there, and no crash."""
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    usual = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most, hard))
+    try:
+        ended.to_netcdf(path)
+    except InputError as error:
+        return "cannot be written" in str(error) and not path.exists()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        signal.signal(signal.SIGXFSZ, usual)
+    return False
 
 
 def writers(folder: Path, many: int) -> Counted:

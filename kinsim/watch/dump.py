@@ -82,6 +82,15 @@ class Recorder:
         self._offsets: list[Array] = []
         self._last = -1
 
+    @property
+    def width(self) -> int:
+        """Cells of a row."""
+        return self._x.size
+
+    def rows(self, steps: int) -> int:
+        """How many rows so many steps leave."""
+        return steps // self.dump.every + 2
+
     def record(self, now: Stages, step: int, before: float, after: float, final: bool = False) -> None:
         """Keep the density of step number `step` (counted from 1), from time `before` to `after`, if it is due."""
         if step == self._last or not (final or step == 1 or step % self.dump.every == 0):
