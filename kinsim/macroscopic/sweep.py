@@ -38,7 +38,8 @@ def stand(
         end = min(begin + TILE, nx + 1)
         last = min(end, nx)
         split(h0[begin:last], q0[begin:last], h[begin : last + 2], u[begin : last + 2])
-        q[begin:last] = q0[begin:last]
+        for i in range(begin, last):
+            q[i] = q0[i]  # not by slices: for their complaint about shapes numba compiles its strings, seconds long
         quicken(h[begin + 1 : last + 1], u[begin + 1 : last + 1], beta, room)
         small_sides(h[begin + 1 : end + 1], u[begin + 1 : end + 1], beta, m[0, 1:], m[1, 1:])
         faces_of_cells(h[begin : end + 1], u[begin : end + 1], beta, m[0], m[1], F1[begin:end], F2[begin:end])
