@@ -9,6 +9,7 @@ import numpy as np
 
 from .balance.scheme4 import Held, HeldSloped, Reflecting
 from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face
+from .balance.settle import settle, stand_held
 from .balance.slide import TILE, slide
 from .balance.stages import TOP, Array, Stages, reach
 from .balance.update import mean_of_stages, update
@@ -111,7 +112,7 @@ class Sliding(Stepper):
         """From where `begin` stood to U^{n+1}, (24)."""
         now, F1 = self.now, self.now.F1
         self._fluxes()
-        slide(now.h, now.u, now.q, F1, now.F2, *self._ground, dt, now.h1, now.qhat, now.J, now.q1)
+        self._move(dt)
         self.wing.transport(now, dt / self._dx)
         lost = self._dx * self.wing.force(now)
         if self._periodic:
@@ -120,6 +121,10 @@ class Sliding(Stepper):
 
     def _fluxes(self) -> None:
         self.wing.upwind_flux(self.now)
+
+    def _move(self, dt: float) -> None:
+        now = self.now
+        slide(now.h, now.u, now.q, now.F1, now.F2, *self._ground, dt, now.h1, now.qhat, now.J, now.q1)
 
 
 class Swept(Sliding):
@@ -138,6 +143,32 @@ class Swept(Sliding):
 
     def _fluxes(self) -> None:
         """They are there."""
+
+
+class Settling(Sliding):
+    """Scheme 4 alike, with faces that hold; see `balance.settle`."""
+
+    def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
+        super().__init__(scene, method)
+        now, to = self.now, self.now.balanced
+        ends = shown(scene.boundary, scene.cells.count)
+        states = (to.h_left, to.u_left, to.h_right, to.u_right)
+        faces = (now.e, now.theta, now.still)
+        seen = (now.low, now.high)
+        self._stand = (*self._ground, *ends, now.h, now.u, now.q, *faces, *states, now.held, *seen, TOP)
+        self._before = (now.h, now.q, to.h_left, *faces, *seen, now.F1, now.F2, *self._ground, *ends[2:])
+
+    def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
+        """Stand at U^n, and judge the faces."""
+        self._fastest = stand_held(h, q, *self._stand)
+        return self._fastest
+
+    def _fluxes(self) -> None:
+        self.wing.held_flux(self.now)
+
+    def _move(self, dt: float) -> None:
+        now = self.now
+        settle(*self._before, dt, now.h1, now.qhat, now.J, now.q1)
 
 
 class Heun(Stepper):
@@ -200,9 +231,11 @@ def make_stepper(scene: Scene, method: Kinetic | Macroscopic) -> Stepper:
     if method.order == 2:
         return Heun(scene, method)
     scheme = make_scheme(method, scene)
+    gridless = isinstance(method, Macroscopic) or isinstance(method.velocity, Fitted)
+    if type(scheme) is Held and gridless:
+        return Settling(scene, method)
     if type(scheme) is not Scheme1:
         return Stepper(scene, method)
     if isinstance(method, Macroscopic):
         return Swept(scene, method)
-    plain = isinstance(method.velocity, Fitted) or may_forget(method, scheme)
-    return (Sliding if plain else Stepper)(scene, method)
+    return (Sliding if gridless or may_forget(method, scheme) else Stepper)(scene, method)

@@ -25,19 +25,14 @@ def clip_velocity(low: Array, high: Array, h1: Array, qhat: Array) -> None:
     exact arithmetic nothing changes; it is the whole rule for dry ground.
     """
     for i in range(h1.size):
-        if h1[i] >= DRY:
-            v = qhat[i] / h1[i]
-            slowest = min(low[i + 1], min(low[i], low[i + 2]))
-            quickest = max(high[i + 1], max(high[i], high[i + 2]))
-            if slowest > quickest:  # a film that falls between nodes: no particle is seen, and none came
-                continue
-            if not v >= slowest:
-                qhat[i] = slowest * h1[i]
-            elif v > quickest:
-                qhat[i] = quickest * h1[i]
-        else:
-            h1[i] = 0.0
-            qhat[i] = 0.0
+        v = qhat[i] / h1[i]
+        slowest = min(low[i + 1], min(low[i], low[i + 2]))
+        quickest = max(high[i + 1], max(high[i], high[i + 2]))
+        among = qhat[i] if v >= slowest else slowest * h1[i]
+        among = quickest * h1[i] if v > quickest else among
+        among = qhat[i] if slowest > quickest else among  # a film between nodes: no particle is seen, and none came
+        qhat[i] = among if h1[i] >= DRY else 0.0
+        h1[i] = h1[i] if h1[i] >= DRY else 0.0
 
 
 @kernel
@@ -71,7 +66,8 @@ def clamped(
     it as a heap of the same slope would.
     """
     last = J.size - 1
-    for i in range(J.size):
+    driven = s - R > 0.0 or s + R < 0.0
+    for i in range(J.size if driven else 0):
         before, here, after = h[i], h[i + 1], h[i + 2]
         if wall_left and i == 0:
             before = max(here - e[0], 0.0)
@@ -83,7 +79,9 @@ def clamped(
             low = uphill_pull(here, before, after, low, low * dx / beta, held)
         elif high < 0.0:
             high = -uphill_pull(here, after, before, -high, -high * dx / beta, held)
-        if still[i] and still[i + 1]:
-            J[i] = -qhat[i]
-        else:
-            J[i] = min(max(-qhat[i], (dt * low) * pulled[i]), (dt * high) * pulled[i])
+        J[i] = min(max(-qhat[i], (dt * low) * pulled[i]), (dt * high) * pulled[i])
+    low, high = dt * (s - R), dt * (s + R)
+    for i in range(0 if driven else J.size):
+        J[i] = min(max(-qhat[i], low * pulled[i]), high * pulled[i])
+    for i in range(J.size):
+        J[i] = -qhat[i] if still[i] & still[i + 1] else J[i]

@@ -51,12 +51,13 @@ def judge_faces(
     for i in range(e.size):
         a, b = h[i], h[i + 1]
         e[i] = min(max(b - a, low), high)
-        theta[i] = 0.0
-        if R > 0.0:
-            w = (a * abs(u[i]) + b * abs(u[i + 1])) / (a + b) if a + b > 0.0 else 0.0
-            theta[i] = max(1.0 - w * (w + math.sqrt(2.0 * beta * min(a, b))) / slowing, 0.0)
-        rest = theta[i] == 1.0 and u[i] == 0.0 and u[i + 1] == 0.0
-        still[i] = rest and abs((b - a) - e[i]) <= SAME * (a + b)
+        w = (a * abs(u[i]) + b * abs(u[i + 1])) / (a + b) if a + b > 0.0 else 0.0
+        share = max(1.0 - w * (w + math.sqrt(2.0 * beta * min(a, b))) / slowing, 0.0)
+        theta[i] = share if R > 0.0 else 0.0
+    for i in range(e.size):
+        a, b = h[i], h[i + 1]
+        rest = (theta[i] == 1.0) & (u[i] == 0.0) & (u[i + 1] == 0.0)
+        still[i] = rest & (abs((b - a) - e[i]) <= SAME * (a + b))
     if wall_left and last > 1:
         e[0], theta[0], still[0] = e[1], theta[1], still[1]
     if wall_right and last > 1:
@@ -77,22 +78,21 @@ def hold_back(
     last = e.size - 1
     for i in range(e.size):
         a, b = h_plus[i], h_minus[i + 1]
-        h_left[i] = max(a - theta[i] * max(-e[i], 0.0), 0.0)
-        h_right[i] = max(b - theta[i] * max(e[i], 0.0), 0.0)
-        if wall_left and i == 0:
-            h_left[i] = h_right[i]
-        elif wall_right and i == last:
-            h_right[i] = h_left[i]
-        elif still[i]:
-            h_left[i] = h_right[i] = min(a, b)
+        h_left[i] = min(a, b) if still[i] else max(a - theta[i] * max(-e[i], 0.0), 0.0)
+        h_right[i] = min(a, b) if still[i] else max(b - theta[i] * max(e[i], 0.0), 0.0)
+    if wall_left:
+        h_left[0] = h_right[0] = max(h_minus[1] - theta[0] * max(e[0], 0.0), 0.0)
+    if wall_right:
+        h_left[last] = h_right[last] = max(h_plus[last] - theta[last] * max(-e[last], 0.0), 0.0)
+    for i in range(e.size):
         u_left[i], u_right[i] = u_plus[i], u_minus[i + 1]
-        held[i] = h_left[i] != a or h_right[i] != b
+    for i in range(e.size):
+        held[i] = (h_left[i] != h_plus[i]) | (h_right[i] != h_minus[i + 1])
 
 
 @kernel
 def rest_flux(h_left: Array, still: Flags, beta: float, F1: Array, F2: Array) -> None:
     """A still face passes no mass, and the pressure of its height: exactly, whatever nodes the density has."""
     for i in range(F1.size):
-        if still[i]:
-            F1[i] = 0.0
-            F2[i] = 0.5 * beta * h_left[i] * h_left[i]
+        F1[i] = 0.0 if still[i] else F1[i]
+        F2[i] = 0.5 * beta * h_left[i] * h_left[i] if still[i] else F2[i]

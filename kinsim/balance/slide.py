@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel
+from ..kernel import kernel, kernel_part
 from .impulse import sliding
 from .update import move
 
@@ -17,6 +17,17 @@ Array = NDArray[np.float64]
 
 TILE = 512
 """Cells of a tile."""
+
+
+@kernel_part
+def show_ends(
+    h0: Array, q0: Array, left: int, right: int, mirror_left: bool, mirror_right: bool, h: Array, u: Array
+) -> None:
+    """The ghosts of h, u show the inner cells `left` and `right`, mirrored where told."""
+    for ghost, shown, mirrored in ((0, left, mirror_left), (h.size - 1, right, mirror_right)):
+        h[ghost] = h0[shown]
+        u[ghost] = q0[shown] / h0[shown] if h0[shown] > 0.0 else 0.0
+        u[ghost] = -u[ghost] if mirrored else u[ghost]
 
 
 @kernel

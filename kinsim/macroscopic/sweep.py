@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..balance.sides import faces_of_cells
-from ..balance.slide import TILE
+from ..balance.slide import TILE, show_ends
 from ..balance.stages import largest, quicken, split
 from ..kernel import kernel
 from .half_moments import small_sides
@@ -28,10 +28,7 @@ def stand(
     in.
     """
     nx = h0.size
-    for ghost, shown, mirrored in ((0, left, mirror_left), (nx + 1, right, mirror_right)):
-        h[ghost] = h0[shown]
-        u[ghost] = q0[shown] / h0[shown] if h0[shown] > 0.0 else 0.0
-        u[ghost] = -u[ghost] if mirrored else u[ghost]
+    show_ends(h0, q0, left, right, mirror_left, mirror_right, h, u)
     room[:] = 0.0
     small_sides(h[:1], u[:1], beta, m[0], m[1])
     for begin in range(0, nx + 1, TILE):
