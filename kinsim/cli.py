@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .method import Kinetic, Macroscopic
     from .progress import Watched
     from .read import SceneFile
+    from .run import Run
     from .trades.choose import Chosen
     from .watch.dump import Dump
 
@@ -170,11 +171,13 @@ def run(
         typer.echo(f"put down; go on with: kinsim run --resume {kept}{files}", err=True)
     elif kept and out and code == 0:
         kept.unlink(missing_ok=True)
+    measured = _measured(chosen, ran)
     if not quiet:
         from .report import causes_report, run_report
         from .report_many import accuracy_rows
 
-        run_report(ran, asked, {"--out": out, "--plot": plot}, Path(name or "run").stem, accuracy_rows(chosen, ran))
+        rows = accuracy_rows(chosen, measured)
+        run_report(ran, asked, {"--out": out, "--plot": plot}, Path(name or "run").stem, rows)
         causes_report(ran)
     elif code:
         complain(str(ran.verdict), code)
@@ -293,6 +296,19 @@ def schema(
 
 for command in (sweep, trade, budget, advise, atlas, animate):
     app.command()(told()(command))
+
+
+def _measured(chosen: Chosen | None, ran: Run) -> float:
+    """The velocity error that a picked method came to; one that is above what was asked for is told as a fault."""
+    if chosen is None:
+        return 0.0
+    from .trades.choose import velocity_error
+
+    measured = velocity_error(ran)
+    if measured > chosen.accuracy:
+        told = f"the velocity error came to {measured:.2g}, above the {chosen.accuracy:.2g} asked for"
+        typer.echo(f"{told}; ask for less, or take more nodes", err=True)
+    return measured
 
 
 def _picked(file: SceneFile, accuracy: float | None, grid: bool, progress: Watched) -> Chosen | None:

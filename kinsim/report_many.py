@@ -14,7 +14,6 @@ from .overview import plain_table
 if TYPE_CHECKING:
     import xarray
 
-    from .run import Run
     from .trades.advise import Advice
     from .trades.budget import Budget
     from .trades.choose import Chosen
@@ -87,13 +86,10 @@ def atlas_report(found: xarray.Dataset, *files: Path | None) -> None:
         console.print(f"written to {escape(str(path))}", highlight=False, soft_wrap=True)
 
 
-def accuracy_rows(chosen: Chosen | None, run: Run) -> list[tuple[str, str]]:
+def accuracy_rows(chosen: Chosen | None, measured: float) -> list[tuple[str, str]]:
     """What was picked and why, and what the velocity error came to be; nothing, if nothing was picked."""
-    from .trades.choose import velocity_error
-
     if chosen is None:
         return []
-    measured = velocity_error(run)
     colour, word = ("green", "below") if measured <= chosen.accuracy else ("red", "above")
     told = f"{measured:.2g} measured against the twin, predicted at most {chosen.predicted:.2g}"
     return [

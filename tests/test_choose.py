@@ -90,12 +90,14 @@ def test_what_cannot_be_had_is_refused_with_the_nearest() -> None:
     with pytest.raises(InputError, match="with 512 nodes: ask for") as told:
         choose(SILO, Kinetic(), CLOCK, accuracy=1e-12, grid=True)
     asked = float(str(told.value).rsplit(" ", 1)[1])
-    assert choose(SILO, Kinetic(), CLOCK, accuracy=2.0 * asked, grid=True).predicted <= 2.0 * asked
+    assert choose(SILO, Kinetic(), CLOCK, accuracy=asked, grid=True).predicted <= asked
     for bad in (0.0, -1.0, float("nan"), True, "small"):
         with pytest.raises(InputError, match="is no error to stay below"):
             choose(SILO, Kinetic(), CLOCK, accuracy=bad)
     with pytest.raises(InputError, match="the closed form has no velocity error"):
         choose(SILO, Macroscopic(), CLOCK, accuracy=1e-3)
+    with pytest.raises(InputError, match="take scheme 4"):
+        choose(SILO, Kinetic(1), CLOCK, accuracy=1e-3)
     with pytest.raises(InputError, match="no candidates"):
         choose(SILO, Kinetic(), CLOCK, accuracy=1e-3, among=[])
     with pytest.raises(InputError, match="there is no mass"):

@@ -83,12 +83,18 @@ def choose(
         options: `keep`, `resume`, `tell`, ... of `kinsim.study`.
 
     Raises:
-        InputError: It cannot be had; the message names the nearest that can.
+        InputError: It cannot be had; the message names the nearest that can. Or the scheme is not 4, or pilot runs
+            tell nothing.
     """
     if not isinstance(method, Kinetic):
         raise InputError("choose: the closed form has no velocity error; leave out the accuracy, or take Kinetic")
     if isinstance(accuracy, bool) or not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < math.inf:
         raise InputError(f"choose: accuracy = {accuracy!r} is no error to stay below; take a number > 0, such as 1e-4")
+    if method.scheme != 4:
+        raise InputError(
+            f"choose: scheme {method.scheme} amplifies any rounding where a mass stops, so that no pilot run tells its "
+            "velocity error; take scheme 4 (--set method.scheme=4)"
+        )
     rest = list(among) if among is not None else candidates(method, grid)
     if not rest:
         raise InputError("choose: there are no candidates; give at least one")
@@ -103,8 +109,17 @@ def choose(
         return Chosen(one, accuracy, pilots.predicted(one), float(cost[found] / np.nanmax(cost)), why)
     most = {kind_of(one): one for one in sorted(rest, key=nodes)}
     error, one = min(((pilots.predicted(one), one) for one in most.values()), key=lambda pair: pair[0])
+    if error <= accuracy:  # the kind was given up too early
+        at = rest.index(one)
+        return Chosen(
+            one, accuracy, error, float(cost[at] / np.nanmax(cost)), _why(one, accuracy, pilots, at, len(rest))
+        )
     if not math.isfinite(error):
         raise InputError("choose: no pilot run came to its end; take a scene and a method that do")
+    if error > 1.0:
+        raise InputError(
+            "choose: the pilot runs differ too much to tell a velocity error; take more cells, or nodes of your own"
+        )
     raise InputError(
         f"choose: a velocity error below {accuracy:.3g} cannot be had; the nearest is {error:.2g}, "
         f"with {one.velocity.words}: ask for {_up(error):.2g}"
