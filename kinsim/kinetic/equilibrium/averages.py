@@ -46,7 +46,7 @@ class CellAverage:
         cell_average(h_left, u_left, h_right, u_right, beta, grid.dxi, rows)
 
     def weights(self, grid: Grid) -> tuple[Array, Array]:
-        return grid.dxi * grid.side, grid.dxi * (grid.side**2 - grid.dxi**2 / 12.0)
+        return grid.dxi * grid.side, grid.dxi * (grid.side**2 - grid.dxi * grid.dxi / 12.0)
 
 
 @kernel
