@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from .errors import InputError
-from .store import check_destination, replacing
+from .store import check_destination, write_bytes
 from .value import Number, value
 
 MAGIC = b"kinsim checkpoint 1\n"
@@ -99,8 +99,7 @@ def write_checkpoint(path: Path, about: Mapping[str, Any], kept: Kept) -> None:
     packed = io.BytesIO()
     np.savez(packed, about=np.array(json.dumps(about)), **kept)  # type: ignore[arg-type]
     content = packed.getvalue()
-    with replacing(path) as name:
-        Path(name).write_bytes(MAGIC + hashlib.sha256(content).hexdigest().encode() + b"\n" + content)
+    write_bytes(MAGIC + hashlib.sha256(content).hexdigest().encode() + b"\n" + content, path)
 
 
 def read_checkpoint(path: str | Path) -> tuple[dict[str, Any], Kept]:

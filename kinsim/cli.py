@@ -10,7 +10,19 @@ import typer
 from .commands import advise, budget, sweep, trade
 from .errors import InputError
 from .film.command import animate
-from .shell import EXIT_CODES, Force, MethodKind, Quiet, SceneName, Settings, complain, keep_apart, read_scene, told
+from .shell import (
+    EXIT_CODES,
+    SCENE,
+    Force,
+    MethodKind,
+    Quiet,
+    SceneName,
+    Settings,
+    complain,
+    keep_apart,
+    read_scene,
+    told,
+)
 from .stability.command import atlas
 
 if TYPE_CHECKING:
@@ -69,9 +81,7 @@ def rooms() -> None:
 @app.command()
 @told()
 def run(
-    name: Annotated[
-        str | None, typer.Argument(metavar="NAME|FILE", help="A built-in scene (see: kinsim scenes), or a scene file.")
-    ] = None,
+    name: Annotated[str | None, SCENE] = None,
     method: Annotated[MethodKind | None, typer.Option(help="Take this wing instead of the one in the file.")] = None,
     settings: Settings = None,
     out: Annotated[Path | None, typer.Option(metavar="RUN.NC", help="Write the run to this netCDF file.")] = None,
@@ -284,14 +294,13 @@ def schema(
     import json
 
     from .schema import scene_schema
-    from .store import replacing
+    from .store import write_text
 
     text = json.dumps(scene_schema(), indent=1, ensure_ascii=False)
     if out is None:
         typer.echo(text)
         return
-    with replacing(out) as name:
-        Path(name).write_text(f"{text}\n", encoding="utf-8")
+    write_text(f"{text}\n", out)
 
 
 for command in (sweep, trade, budget, advise, atlas, animate):

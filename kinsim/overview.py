@@ -6,7 +6,6 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 from pydantic import TypeAdapter
 from rich.console import Console
 from rich.markup import escape
@@ -38,23 +37,16 @@ def room_list() -> None:
     Console().print(table)
 
 
-def first_speed(file: SceneFile) -> float:
-    """The fastest particle at the start, max(|u| + c)."""
-    h, q = file.scene.initial()
-    u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
-    return float(np.max(np.abs(u) + np.sqrt(2.0 * file.scene.beta * h)))
-
-
 def first_courant(file: SceneFile) -> float:
     """The Courant number of the first step, in closed form."""
     clock = file.clock
-    return first_speed(file) * clock.dt / file.cells.dx if isinstance(clock, Fixed) else clock.number
+    return file.scene.fastest * clock.dt / file.cells.dx if isinstance(clock, Fixed) else clock.number
 
 
 def first_steps(file: SceneFile) -> float:
     """So many steps it takes, as far as the start tells."""
     clock = file.clock
-    return clock.steps if isinstance(clock, Fixed) else clock.end * first_speed(file) / (clock.number * file.cells.dx)
+    return clock.steps if isinstance(clock, Fixed) else clock.end * file.scene.fastest / (clock.number * file.cells.dx)
 
 
 def saved_every(file: SceneFile) -> int:

@@ -17,7 +17,7 @@ from .measure.crosscheck import CrossCheck
 from .measure.seams import STAGES
 from .method import Kinetic, Macroscopic
 from .overview import plain_table
-from .run import Run
+from .run import ENDED, Run
 
 if TYPE_CHECKING:
     import xarray
@@ -49,7 +49,7 @@ def _figures(run: Run, asked: Kinetic | Macroscopic) -> list[tuple[str, str]]:
     drift = f"{run.mass_drift:+.3e} of the mass"
     if books["coupling_drift"][-1]:
         drift += f", {books['coupling_drift'][-1] / books['mass'][0]:+.3e} of it where two cells chose unlike fluxes"
-    good = run.verdict.kind in ("finished", "at-rest")
+    good = run.verdict.kind in ENDED
     shown = [
         ("steps", f"{run.steps}, to t = {run.t[-1]:.6g}"),
         ("dt", _span(run.dt)),

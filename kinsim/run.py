@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from .balance.stages import Array
-from .clock import Clock
+from .clock import Clock, Replay
 from .method import Kinetic, Macroscopic
 from .scene import Scene
 from .store import write_netcdf
@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 VerdictKind = Literal[
     "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "too-many-steps", "interrupted"
 ]  # fmt: skip
+
+ENDED: tuple[VerdictKind, ...] = ("finished", "at-rest")
+"""Kinds of runs that came to their end."""
 
 
 @dataclass(frozen=True)
@@ -100,6 +103,11 @@ class Run:
     def steps(self) -> int:
         """Steps taken."""
         return self.dt.size
+
+    @property
+    def replay(self) -> Replay:
+        """The clock of the same steps once more."""
+        return Replay(tuple(self.dt.tolist()), end=float(self.t[-1]))
 
     @cached_property
     def ledger(self) -> xarray.Dataset:

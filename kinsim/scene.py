@@ -66,6 +66,13 @@ class Scene:
         """Whether anything pulls at the mass or holds it back."""
         return self.chute.sin != 0.0 or self.resistance != 0.0
 
+    @property
+    def fastest(self) -> float:
+        """The fastest particle at the start, max(|u| + c), c = sqrt(2 beta h)."""
+        h, q = self.initial()
+        u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
+        return float(np.max(np.abs(u) + np.sqrt(2.0 * self.beta * h)))
+
     def initial(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Initial h and q = h u, the values at the cell centres, each of shape (nx,).
 

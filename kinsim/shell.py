@@ -23,9 +23,8 @@ class MethodKind(StrEnum):
     MACROSCOPIC = "macroscopic"
 
 
-SceneName = Annotated[
-    str, typer.Argument(metavar="NAME|FILE", help="A built-in scene (see: kinsim scenes), or a scene file.")
-]
+SCENE = typer.Argument(metavar="NAME|FILE", help="A built-in scene (see: kinsim scenes), or a scene file.")
+SceneName = Annotated[str, SCENE]
 Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="KEY=VALUE", help="Change a key, for example friction.delta=pi/12; may be repeated."),

@@ -90,13 +90,12 @@ def simulate(
 
 def go(loop: Loop, progress: Progress | None) -> Run:
     """Step to the end, or until somebody stops it."""
-    began = time.perf_counter() - loop.spent
     try:
         with Deferred() as interrupt:
             verdict = loop.run(progress, interrupt)
     except KeyboardInterrupt:
         verdict = loop.verdict("interrupted", "interrupted")
-    return loop.finish(verdict, time.perf_counter() - began)
+    return loop.finish(verdict)
 
 
 def _check(scene: Scene, method: Kinetic | Macroscopic, clock: AnyClock, save_every: int) -> None:
@@ -146,7 +145,7 @@ class Loop:
         self.times: list[float] = []
         self.states: list[tuple[Array, Array]] = []
         self.still = 0
-        self.spent = 0.0
+        self.began = time.perf_counter()
         self.fastest = Survey.of(self.h, self.q, scene.beta).fastest
         self.first_reach = self.reached = 0.0
         self.falling = _falling(scene, clock)
@@ -186,7 +185,8 @@ class Loop:
             self.causes = Causes(self.scene, self.stepper, density)
 
     def start(self) -> None:
-        """Keep the initial state."""
+        """Keep the initial state; from now on time counts."""
+        self.began = time.perf_counter()
         self.ledger.start(self.h, self.q)
         self._save()
 
@@ -194,7 +194,6 @@ class Loop:
         """Step until the clock or a fault ends it."""
         scene, clock, stepper, awake = self.scene, self.clock, self.stepper, self.awake
         dx, beta = scene.cells.dx, scene.beta
-        began = time.perf_counter() - self.spent
         sleepy = self._same_length()
         look = Survey.of(self.h, self.q, beta)
         while not interrupt.asked:
@@ -242,7 +241,6 @@ class Loop:
                 self._save()
             if settled and not last:
                 return self.verdict("at-rest", "came to rest")
-            self.spent = time.perf_counter() - began
             self.keeper.after_step(self.kept)
             if progress and self.step % 16 == 0:
                 progress(clock.progress(self.step, self.t))
@@ -300,7 +298,8 @@ class Loop:
     def restore(self, kept: Kept) -> None:
         """Stand where `kept` was told."""
         own = part("loop", kept)
-        step, self.t, still, self.fastest, self.first_reach, self.reached, self.spent = own["numbers"].tolist()
+        step, self.t, still, self.fastest, self.first_reach, self.reached, spent = own["numbers"].tolist()
+        self.began = time.perf_counter() - spent
         self.step, self.still, self.outside = int(step), int(still), str(own["outside"])
         self.h[:], self.q[:] = own["state"]
         self.dts, self.times = own["dts"].tolist(), own["times"].tolist()
@@ -314,8 +313,14 @@ class Loop:
         for recorder in self.recorders:
             recorder.restore(part(f"dump {recorder.dump.name}", kept))
 
-    def finish(self, verdict: Verdict, wall_time: float) -> Run:
+    @property
+    def spent(self) -> float:
+        """Seconds in the time loop so far."""
+        return time.perf_counter() - self.began
+
+    def finish(self, verdict: Verdict) -> Run:
         """The run as a value; the last good state is its last row."""
+        wall_time = self.spent
         if self.times[-1] != self.t:
             moving = isinstance(self.method, Kinetic) and isinstance(self.method.velocity, Window)
             shown = verdict.kind != "non-finite" and not moving and self.awake.at is self.stepper

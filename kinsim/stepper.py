@@ -226,6 +226,11 @@ def make_scheme(method: Kinetic | Macroscopic, scene: Scene) -> Scheme:
     return (Scheme3Cell if method.coupling == "cell" else Scheme3Face)(scene)
 
 
+def largest_courant(method: Kinetic | Macroscopic) -> float:
+    """The largest Courant number that a method may take, (28)."""
+    return (Heun if method.order == 2 else Stepper).limit
+
+
 def make_stepper(scene: Scene, method: Kinetic | Macroscopic) -> Stepper:
     """The stepper that the order of the method asks for."""
     if method.order == 2:

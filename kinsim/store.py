@@ -68,9 +68,7 @@ def write_netcdf(dataset: xarray.Dataset, path: str | Path) -> Path:
     """
     packed = io.BytesIO()  # HDF5 does not survive a disk that is full
     dataset.to_netcdf(packed, engine="h5netcdf", invalid_netcdf=False)
-    with replacing(path) as name:
-        Path(name).write_bytes(packed.getbuffer())
-    return Path(path)
+    return write_bytes(packed.getbuffer(), path)
 
 
 def write_text(text: str, path: str | Path) -> Path:
@@ -79,8 +77,17 @@ def write_text(text: str, path: str | Path) -> Path:
     Raises:
         InputError: The file cannot be put there.
     """
+    return write_bytes(text.encode("utf-8"), path)
+
+
+def write_bytes(content: bytes | memoryview, path: str | Path) -> Path:
+    """Write `content` to `path`, all of it or nothing.
+
+    Raises:
+        InputError: The file cannot be put there.
+    """
     with replacing(path) as name:
-        Path(name).write_text(text, encoding="utf-8")
+        Path(name).write_bytes(content)
     return Path(path)
 
 

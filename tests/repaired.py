@@ -10,7 +10,7 @@ import pytest
 
 from kinsim import Cells, ConstantSlope, Coulomb, Fitted, Fixed, Kinetic, Macroscopic, Profile, Scene, Uniform
 from kinsim.exact import random_pile
-from kinsim.stepper import Heun, Stepper
+from kinsim.stepper import largest_courant as limit
 
 EPS = float(np.finfo(float).eps)
 DELTA = 0.3
@@ -44,11 +44,6 @@ PILES = [
 ]
 LEANING = pytest.mark.parametrize(("zeta", "boundary", "seed"), [(*of, i % 3) for i, of in enumerate(PILES)])
 LEANING_ANY = pytest.mark.parametrize(("zeta", "boundary", "seed"), [(*of, seed) for of in PILES for seed in range(3)])
-
-
-def limit(method: Macroscopic | Kinetic) -> float:
-    """The largest Courant number."""
-    return Heun.limit if method.order == 2 else Stepper.limit
 
 
 def pile(zeta: float, boundary: str, seed: int, fill: float = 1.0) -> Scene:

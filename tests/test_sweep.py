@@ -21,6 +21,16 @@ METHODS = {
 }
 
 
+def same_step(sweeps: Stepper, rooms: Stepper, h: np.ndarray, q: np.ndarray, stages: tuple[str, ...]) -> None:
+    """One step of each from (h, q): every stage, what is returned, to the bit."""
+    assert sweeps.begin(h, q) == rooms.begin(h, q)
+    dt = 0.5 * rooms.scene.cells.dx / max(rooms.reach(), 1e-9)
+    assert sweeps.advance(dt) == rooms.advance(dt)
+    assert sweeps.reach() == rooms.reach()
+    for stage in stages:
+        np.testing.assert_array_equal(getattr(sweeps.now, stage), getattr(rooms.now, stage), stage)
+
+
 @pytest.mark.parametrize("name", METHODS)
 @pytest.mark.parametrize("nx", [2, 50, TILE, TILE + 1, 2 * TILE + 7])
 @pytest.mark.parametrize("boundary", ["open", "wall", "periodic", ("open", "wall")])
@@ -33,12 +43,7 @@ def test_sweeps_are_the_step_of_the_rooms(name: str, boundary: Boundary, nx: int
     q = h * dice.normal(size=nx) * (dice.random(nx) > 0.2)
     rooms, sweeps = Stepper(scene, METHODS[name]), make_stepper(scene, METHODS[name])
     assert isinstance(sweeps, Sliding)
-    assert sweeps.begin(h, q) == rooms.begin(h, q)
-    dt = 0.5 * scene.cells.dx / max(rooms.reach(), 1e-9)
-    assert sweeps.advance(dt) == rooms.advance(dt)
-    assert sweeps.reach() == rooms.reach()
-    for stage in STAGES:
-        np.testing.assert_array_equal(getattr(sweeps.now, stage), getattr(rooms.now, stage), stage)
+    same_step(sweeps, rooms, h, q, STAGES)
     if rooms.density and sweeps.density:
         np.testing.assert_array_equal(sweeps.density.f, rooms.density.f)
 
@@ -64,12 +69,7 @@ def test_settling_is_the_step_of_the_rooms(name: str, boundary: Boundary, zeta: 
     creeping = dice.choice([0.0, 1e-9, 1e-3], nx) * dice.normal(size=nx)
     for h, u in ((wild, dice.normal(size=nx)), (wild, creeping), (pile, np.zeros(nx)), (pile, creeping)):
         q = h * u * (dice.random(nx) > 0.2)
-        assert sweeps.begin(h, q) == rooms.begin(h, q)
-        dt = 0.5 * scene.cells.dx / max(rooms.reach(), 1e-9)
-        assert sweeps.advance(dt) == rooms.advance(dt)
-        assert sweeps.reach() == rooms.reach()
-        for stage in HELD:
-            np.testing.assert_array_equal(getattr(sweeps.now, stage), getattr(rooms.now, stage), stage)
+        same_step(sweeps, rooms, h, q, HELD)
         for side in ("h_left", "u_left", "h_right", "u_right"):
             np.testing.assert_array_equal(getattr(sweeps.now.balanced, side), getattr(rooms.now.balanced, side), side)
     assert nx < 50 or rooms.now.theta.any()

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from ..clock import AnyClock, Courant, Replay
+from ..clock import AnyClock, Courant
 from ..kinetic.velocity import Uniform
 from ..memory import require
 from ..method import Kinetic
-from ..overview import first_speed, first_steps
+from ..overview import first_steps
 from ..read import SceneFile
 from ..run import Run
 from ..simulate import Progress, simulate
@@ -29,7 +29,7 @@ def shoot(file: SceneFile, frames: int, force: bool = False, progress: Progress 
         require(16.0 * frames * file.cells.count * _nodes(file), f"the density in {frames} frames")
     runs: list[Run] = []
     for method in (file.method, *([file.method.twin] if isinstance(file.method, Kinetic) else [])):
-        clock = _again(runs[0]) if runs else file.clock
+        clock: AnyClock = runs[0].replay if runs and isinstance(file.clock, Courant) else file.clock
         runs.append(simulate(file.scene, method, clock, every, force=force, dumps=dumps, progress=progress))
         if runs[-1].verdict.kind == "interrupted":
             raise KeyboardInterrupt
@@ -39,15 +39,8 @@ def shoot(file: SceneFile, frames: int, force: bool = False, progress: Progress 
     return runs
 
 
-def _again(run: Run) -> AnyClock:
-    """The same steps once more."""
-    if isinstance(run.clock, Courant):
-        return Replay(tuple(run.dt.tolist()), end=float(run.t[-1]))
-    return run.clock  # type: ignore[return-value]
-
-
 def _nodes(file: SceneFile) -> int:
     velocity = file.method.velocity  # type: ignore[union-attr]
     if isinstance(velocity, Uniform):
         return velocity.count
-    return int(velocity.grid(first_speed(file)).count)  # type: ignore[union-attr]
+    return int(velocity.grid(file.scene.fastest).count)  # type: ignore[union-attr]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..clock import AnyClock, Courant, Fixed, Replay
+from ..clock import AnyClock, Courant, Fixed
 from ..errors import InputError
 from ..method import Kinetic, Macroscopic
 from ..run import Run
@@ -81,7 +81,7 @@ def _part(progress: Progress, number: int, of: int) -> Progress:
 def _after(runs: list[Run], clock: Fixed | Courant) -> AnyClock:
     if not runs or isinstance(clock, Fixed):
         return clock
-    return Replay(tuple(runs[0].dt.tolist()), end=float(runs[0].t[-1]))
+    return runs[0].replay
 
 
 def _differences(runs: list[Run]) -> xarray.Dataset:

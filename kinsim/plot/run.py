@@ -10,6 +10,7 @@ import numpy as np
 from ..balance.stages import Array
 from ..errors import InputError
 from ..exact.of_scene import exact_of
+from ..film.reel import equilibrium
 from ..run import Run
 from ..watch.dump import LONG_NAMES
 from .picture import save
@@ -112,6 +113,5 @@ def _density(run: Run, h: Array, u: Array, low: float, high: float) -> tuple[Arr
             and run.t[-1] in dump["t"].to_numpy()[-1:]
         ):
             return dump["xi"].to_numpy(), dump[-1].to_numpy(), rf"$f(x, \xi)$ after the force, {end}"
-    xi, beta = np.linspace(low, high, 401), run.scene.beta
-    square = 2.0 * beta * h[:, None] - (xi - u[:, None]) ** 2
-    return xi, np.sqrt(np.maximum(square, 0.0)) / (np.pi * beta), rf"equilibrium $M(h, \xi - u)$, {end}"
+    xi = np.linspace(low, high, 401)
+    return xi, equilibrium(h, u, run.scene.beta, xi), rf"equilibrium $M(h, \xi - u)$, {end}"

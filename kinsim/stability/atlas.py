@@ -16,8 +16,10 @@ from ..errors import InputError
 from ..kinetic.velocity import Uniform
 from ..measure.compare import method_name
 from ..method import Kinetic, Macroscopic
+from ..stepper import largest_courant
+from ..studies.engine import Tell
 from ..studies.member import Member, Request
-from ..studies.record import Folder, Keep, Nowhere, Record, failed
+from ..studies.record import Keep, Record, failed, kept_in
 from ..studies.study import collect
 from .axes import AXES, Axis, axis
 from .judge import MEASURES, judge
@@ -29,7 +31,6 @@ if TYPE_CHECKING:
 EVERY = 10
 """Steps from one look at the state to the next."""
 
-Tell = Callable[[str, float], None]
 Found = dict[str, Any]
 
 
@@ -72,7 +73,7 @@ def atlas(
         if first.field == "nodes" and not _counts_nodes(method):
             continue
         places = _places(Setting(method, steps=steps), first, second)
-        kept: Keep = Folder(keep, resume) if keep is not None else Nowhere()
+        kept = kept_in(keep, resume)
         for place, (run, nudged) in zip(places, _run(places, first.forced, kept, workers, share), strict=True):
             word, measured = judge(place.setting, run, nudged)
             rows.append({"axis": name, "across": across, "value": place.value, "across_value": place.across_value,
@@ -153,5 +154,5 @@ def _dataset(rows: Sequence[dict[str, Any]], method: Kinetic | Macroscopic) -> x
     numbers = {name: ("point", np.array([row[name] for row in rows]), {"units": "1"}) for name in MEASURES}
     return xarray.Dataset(
         columns | numbers,
-        attrs={"title": "kinsim atlas", "method": method_name(method), "limit": Setting(method).limit},
+        attrs={"title": "kinsim atlas", "method": method_name(method), "limit": largest_courant(method)},
     )

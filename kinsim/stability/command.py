@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..shell import Settings
+from ..shell import Quiet, Settings
 
 
 def atlas(
@@ -24,7 +24,7 @@ def atlas(
     keep: Annotated[Path | None, typer.Option(metavar="FOLDER", help="Keep finished points here.")] = None,
     resume: Annotated[bool, typer.Option("--resume", help="Take finished points from --keep.")] = False,
     workers: Annotated[int, typer.Option(help="Processes to start; 0 runs all here.")] = 0,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but faults.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Take a method to the extremes: Courant number, heights, velocities, slopes, friction, cells, nodes.
 

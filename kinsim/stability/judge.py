@@ -9,6 +9,8 @@ from typing import Any, Literal
 import numpy as np
 
 from ..balance.stages import Array
+from ..measure.entropy import of_state
+from ..run import ENDED
 from ..scene import Scene
 from .setting import Setting
 
@@ -37,8 +39,6 @@ BOOKED = 1e-12
 
 UNBOOKED = 1e-9
 """So much of the mass may come or go without being booked: rounding."""
-
-ENDED = ("finished", "at-rest")
 
 MEASURES = ("drift", "least", "rise", "growth", "variation")
 
@@ -96,10 +96,8 @@ def rise(scene: Scene, h: Array, q: Array) -> float:
     """
     unit = float(np.max(h)) or 1.0
     h, x = h / unit, scene.x
-    kinetic = 0.5 * np.divide((q / unit) ** 2, h, out=np.zeros_like(h), where=h > 0)
-    pressure = 0.5 * scene.beta * unit * h * h
     place = scene.chute.sin * (x.max() - x if scene.chute.sin > 0 else x.min() - x) * h
-    energy = (kinetic + pressure + place).sum(axis=1)
+    energy = (of_state(h, q / unit, scene.beta * unit) + place).sum(axis=1)
     size = float(np.abs(energy).max())
     unknown = abs(scene.chute.sin) * scene.cells.dx * float(h[0].sum())
     most = float(np.max(energy - np.minimum.accumulate(energy)))

@@ -18,7 +18,7 @@ from ..model.friction import Coulomb, Frictionless
 from ..model.heap import Profile
 from ..scene import Scene
 from ..simulate import find_bound
-from ..stepper import make_stepper
+from ..stepper import largest_courant
 
 Mass = Literal["hump", "one cell", "none"]
 
@@ -78,9 +78,9 @@ class Setting:
     @property
     def nudged(self) -> Profile:
         """The heap with noise."""
-        h, q = self.scene.initial()
+        h, u = self.scene.heap(self.scene.x)
         noise = np.random.default_rng(0).uniform(-1.0, 1.0, h.size)
-        return Profile(h * (1.0 + NUDGE * noise), np.divide(q, h, out=np.zeros_like(q), where=h > 0))
+        return Profile(h * (1.0 + NUDGE * noise), u)
 
     @cached_property
     def way(self) -> Kinetic | Macroscopic:
@@ -91,18 +91,11 @@ class Setting:
         return method.within(find_bound(self.scene, method, self.clock, force=True)) if method.unbounded else method
 
     @property
-    def limit(self) -> float:
-        """The largest Courant number of the method, (28)."""
-        return make_stepper(self.scene, self.method.twin if isinstance(self.method, Kinetic) else self.method).limit
-
-    @property
     def clock(self) -> Courant:
         """About `steps` steps, fewer where gravity accelerates the mass much."""
         scene = self.scene
-        number = 0.9 * self.limit if self.number is None else self.number
-        h, q = scene.initial()
-        u = np.divide(np.abs(q), h, out=np.zeros_like(q), where=h > 0)
-        fastest = float(np.max(u + np.sqrt(2.0 * scene.beta * h)))
+        number = 0.9 * largest_courant(self.method) if self.number is None else self.number
+        fastest = scene.fastest
         way = self.steps * number * scene.cells.dx
         ends = [math.sqrt(2.0 * way / pull) for pull in [abs(scene.chute.sin) + scene.resistance] if pull > 0.0]
         end = min([*ends, *([way / fastest] if fastest > 0.0 else [])], default=way)

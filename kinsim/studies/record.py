@@ -138,3 +138,8 @@ class Folder:
 
 
 Keep = Nowhere | Folder
+
+
+def kept_in(path: str | Path | None, resume: bool) -> Keep:
+    """The folder at `path`, or nowhere."""
+    return Folder(path, resume) if path is not None else Nowhere()

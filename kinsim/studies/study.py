@@ -16,7 +16,7 @@ from ..scene import Scene
 from .dataset import to_dataset
 from .engine import Tell, engine
 from .member import ONCE, Member, Refused, Request, code_stamp
-from .record import Folder, Keep, Nowhere, Record, check_fields, failed
+from .record import Keep, Record, check_fields, failed, kept_in
 from .vary import check_over, vary
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def study(
     rows = vary(scene, method, clock, lists, paired, request)
     rounds = [[_again(row, number) for row in rows] for number in range(repeats)]
     members = {one.key: one for again in rounds for one in again if isinstance(one, Member)}
-    kept: Keep = Folder(keep, resume) if keep is not None else Nowhere()
+    kept = kept_in(keep, resume)
     found = collect(members, kept, workers, scheduler, tell or _silent)
     attrs = {
         "title": f"{scene.title or 'untitled'}: a study over {', '.join(lists)}",

@@ -13,6 +13,7 @@ from ..errors import InputError
 from ..kinetic.velocity import Fitted, Uniform
 from ..method import Kinetic, Macroscopic
 from ..model.friction import Frictionless
+from ..run import ENDED
 from ..scene import Scene
 from ..studies.study import study
 from .judge import mass_of
@@ -81,7 +82,7 @@ def advise(scene: Scene, clock: Fixed | Courant, **options: Any) -> Advice:
     pace = steady(coarse, method, NUMBER, end_of(clock))
     every = max(1, pace.steps // ROWS)
     found = study(coarse, method, pace, {"clock": [pace]}, fields=("h", "u"), save_every=every, **options).isel(clock=0)
-    if str(found["verdict_kind"].item()) not in ("finished", "at-rest"):
+    if str(found["verdict_kind"].item()) not in ENDED:
         raise InputError(f"advise: the coarse run stops: {found['verdict'].item()}; take a scene that comes to its end")
     t, h, u = (found[f"history_{name}"].to_numpy() for name in ("t", "h", "u"))
     wet, c = h > 0.0, np.sqrt(2.0 * scene.beta * h)

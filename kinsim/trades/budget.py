@@ -12,6 +12,7 @@ from ..clock import Courant, Fixed
 from ..errors import InputError
 from ..kinetic.velocity import Fitted, Window
 from ..method import Kinetic, Macroscopic
+from ..run import ENDED
 from ..scene import Scene
 from ..studies.study import study
 from .choose import candidates
@@ -86,7 +87,7 @@ def budget(scene: Scene, method: Kinetic | Macroscopic, clock: Fixed | Courant, 
     over = {"method": [one for one, _ in runs], "clock": [one for _, one in runs]}
     found = study(scene, method, first, over, paired=True, **options)
     for kind, verdict in zip(found["verdict_kind"].values, found["verdict"].values, strict=True):
-        if kind not in ("finished", "at-rest"):
+        if kind not in ENDED:
             raise InputError(f"budget: a run stops: {verdict}; take a scene and a method that come to the end")
     h = found["h"].to_numpy()
     against = judge(scene, end, 1.0, **options)

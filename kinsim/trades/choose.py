@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..clock import Courant, Fixed, Replay
+from ..clock import Courant, Fixed
 from ..errors import InputError
 from ..kinetic.velocity import Fitted, Uniform
 from ..measure.compare import method_name
@@ -157,8 +157,7 @@ def velocity_error(run: Run) -> float:
     """
     if isinstance(run.method, Macroscopic):
         raise InputError("velocity error: the closed form has none; give a kinetic run")
-    steps = Replay(tuple(run.dt.tolist()), end=float(run.t[-1]))
-    twin = simulate(run.scene, run.method.twin, steps, ONCE)
+    twin = simulate(run.scene, run.method.twin, run.replay, ONCE)
     if twin.verdict.kind == "interrupted":
         raise KeyboardInterrupt
     return float(np.abs(run.h[-1] - twin.h[-1]).sum() * run.scene.cells.dx / mass_of(run.scene))

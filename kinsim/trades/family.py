@@ -11,7 +11,8 @@ from ..kinetic.force import FORCES
 from ..kinetic.velocity import Fitted, Uniform
 from ..method import Kinetic, Macroscopic
 from ..read import SHARED
-from .pace import largest, twin_of
+from ..stepper import largest_courant
+from .pace import twin_of
 
 COUNTS = (8, 16, 32, 64, 128, 256)
 """Velocity cells of the lines over n."""
@@ -36,7 +37,7 @@ class Choice:
     @property
     def courant(self) -> float:
         """Its Courant number."""
-        return self.number * largest(self.method)
+        return self.number * largest_courant(self.method)
 
     @property
     def nodes(self) -> int:

@@ -10,7 +10,7 @@ from ..errors import InputError
 from ..method import Kinetic, Macroscopic
 from ..scene import Scene
 from ..simulate import simulate
-from ..stepper import Heun, Stepper
+from ..stepper import largest_courant
 from ..studies.member import ONCE
 
 
@@ -22,11 +22,6 @@ def end_of(clock: Fixed | Courant) -> float:
 def twin_of(method: Kinetic | Macroscopic) -> Macroscopic:
     """The closed form of a method."""
     return method.twin if isinstance(method, Kinetic) else method
-
-
-def largest(method: Kinetic | Macroscopic) -> float:
-    """The largest Courant number that a method may take."""
-    return Stepper.limit if method.order == 1 else Heun.limit
 
 
 def finer(scene: Scene, factor: float) -> Scene:
@@ -41,7 +36,7 @@ def steady(scene: Scene, method: Kinetic | Macroscopic, number: float, end: floa
     Raises:
         InputError: The closed form does not come to the end.
     """
-    allowed = min(number, largest(method))
+    allowed = min(number, largest_courant(method))
     run = simulate(scene, twin_of(method), Courant(allowed, end), ONCE)
     if run.verdict.kind == "interrupted":
         raise KeyboardInterrupt

@@ -17,11 +17,13 @@ from ..balance.stages import Array
 from ..clock import Courant
 from ..kinetic.velocity import Fitted, Uniform
 from ..method import Kinetic
+from ..run import ENDED
 from ..scene import Scene
+from ..stepper import largest_courant
 from ..studies.study import study
 from .family import NUMBER
 from .judge import mass_of
-from .pace import finer, largest, steady
+from .pace import finer, steady
 
 LEVELS = (0.25, 0.5)
 
@@ -45,7 +47,7 @@ class Pilots:
     def __init__(self, scene: Scene, method: Kinetic, end: float, **options: Any) -> None:
         self._options = options
         self._scenes = [finer(scene, level) for level in LEVELS]
-        number = NUMBER * largest(method)
+        number = NUMBER * largest_courant(method)
         self._clocks = [steady(one, method, number, end) for one in self._scenes]
         self.floor = float(np.finfo(float).eps) * max(clock.steps for clock in self._clocks) / LEVELS[-1]
         self._found: dict[Kinetic, Array] = {}
@@ -76,7 +78,7 @@ class Pilots:
         }
         found = study(self._scene, self._twin, self._clocks[0], over, paired=True, **self._options)
         out = np.empty((len(LEVELS), len(methods)), dtype=object)
-        good = np.isin(found["verdict_kind"].to_numpy(), ("finished", "at-rest"))
+        good = np.isin(found["verdict_kind"].to_numpy(), ENDED)
         for at, (level, _) in enumerate(pairs):
             count = self._scenes[level].cells.count
             h = found["h"].to_numpy()[at, :count] if good.any() and "h" in found else np.full(count, np.nan)
@@ -135,7 +137,7 @@ def seconds_per_step(scene: Scene, methods: Sequence[Kinetic], **options: Any) -
     for method in methods:
         kinds.setdefault(kind_of(method), []).append(method)
     timed = {method: 0.0 for of in kinds.values() for method in _telling(of)}
-    clock = short_clock(scene, NUMBER * largest(methods[0]))
+    clock = short_clock(scene, NUMBER * largest_courant(methods[0]))
     found = study(scene, methods[0], clock, {"method": list(timed)}, repeats=ROUNDS, **options)
     each = (found["wall_time"] / found["steps"]).min("repeat").to_numpy()
     timed.update(zip(timed, each.tolist(), strict=True))
@@ -156,7 +158,4 @@ def _telling(of: Sequence[Kinetic]) -> list[Kinetic]:
 def short_clock(scene: Scene, number: float) -> Courant:
     """About `TIMED_STEPS` steps, in which no cell sleeps."""
     mass_of(scene)
-    h, q = scene.initial()
-    u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
-    speed = float(np.max(np.abs(u) + np.sqrt(2.0 * scene.beta * h)))
-    return Courant(number, TIMED_STEPS * number * scene.cells.dx / speed)
+    return Courant(number, TIMED_STEPS * number * scene.cells.dx / scene.fastest)

@@ -13,6 +13,7 @@ from ..clock import Courant, Fixed
 from ..errors import InputError
 from ..measure.compare import method_name
 from ..method import Kinetic, Macroscopic
+from ..run import ENDED
 from ..scene import Scene
 from ..studies.engine import Tell
 from ..studies.study import study
@@ -23,8 +24,6 @@ from .pace import end_of, finer, steady, twin_of
 
 if TYPE_CHECKING:
     import xarray
-
-GOOD = ("finished", "at-rest")
 
 WORDS = {
     "wall_time": ("time in the time loop, median", "s"),
@@ -119,7 +118,7 @@ def _measured(
     import xarray
 
     times = timed["wall_time"].to_numpy().reshape(len(family), -1)
-    good = np.isin(timed["verdict_kind"].to_numpy(), GOOD)
+    good = np.isin(timed["verdict_kind"].to_numpy(), ENDED)
     errors = np.full((3, len(family)), np.nan)
     for at, one in enumerate(family):
         if good[at]:
