@@ -25,6 +25,7 @@ from laboratory.repaired import Array
 from kinsim import Cells, Courant, Frictionless, Macroscopic, Profile, Run, Scene, simulate
 from kinsim.balance.scheme4 import Limiter
 from kinsim.exact import ParabolicCap, Riemann, UniformSlide
+from kinsim.stepper import largest_courant
 
 EPS = float(np.finfo(float).eps)
 
@@ -183,7 +184,8 @@ def crossing(chapter: Chapter, counts: list[int]) -> None:
 
     rows: list[list[str | float]] = []
     widths = [1 / count for count in counts[:-1]]
-    for limiter, number in (("between", 0.25), ("between", 0.49), ("mc", 0.49)):
+    limit = largest_courant(Macroscopic(4, order=2))
+    for limiter, number in (("between", 0.25), ("between", limit), ("mc", limit)):
         fine = [heights(number, limiter, count) for count in counts]
         apart = [float(np.abs(b.reshape(-1, 2).mean(axis=1) - a).mean()) for a, b in pairwise(fine)]
         name = f"second order, {limiter}, Courant {number}"
