@@ -4,10 +4,11 @@ PYTHON ?= python3
 BIN := .venv/bin
 SHELL := /bin/sh
 
-.PHONY: help demo test check bench trade clean
+.PHONY: help demo docs test check bench trade clean
 
 help:
 	@echo "make demo    install, run the silo with both wings, write out/silo.nc and out/silo.png"
+	@echo "make docs    install, run the tutorials, build the documentation into out/docs, which needs no network to be read"
 	@echo "make test    install, lint, type-check, run all tests"
 	@echo "make bench   install, measure speed and memory against the targets, write out/benchmarks.json"
 	@echo "make trade   install, measure speed against accuracy on the five scenes, rewrite docs/trade.md (minutes)"
@@ -23,6 +24,16 @@ demo: .venv/installed
 	@mkdir -p out
 	$(BIN)/kinsim run silo --out out/silo.nc --plot out/silo.png
 	$(BIN)/kinsim compare silo
+
+.venv/docs: .venv/installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	@touch $@
+
+docs: .venv/docs
+	$(BIN)/sphinx-build --fresh-env --fail-on-warning --keep-going --nitpicky --jobs 2 \
+		--doctree-dir out/docs-trees --builder html docs out/docs
+	$(BIN)/python .ci/offline.py out/docs
+	@echo "open out/docs/index.html"
 
 check: .venv/installed
 	$(BIN)/ruff check .
