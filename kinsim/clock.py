@@ -22,6 +22,8 @@ class Clock(Protocol):
     def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None: ...
     def time_after(self, step: int, t: float, dt: float) -> float: ...
     def progress(self, step: int, t: float) -> float: ...
+    def steps_at(self, speed: float, dx: float) -> int:
+        """How many steps are foreseen if the fastest particle stays as fast as `speed`."""
 
 
 @value
@@ -32,6 +34,10 @@ class Fixed:
     steps: Annotated[Whole, Field(ge=1)]
     stop_at_rest: bool = False
     kind: Literal["fixed"] = kind("fixed")
+
+    def __post_init__(self) -> None:
+        if not self.steps * self.dt < math.inf:
+            raise ValueError(f"{self.steps} steps of dt = {self.dt:g} have no finite end; take fewer or shorter ones")
 
     def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
         """dt, `steps` times."""
@@ -44,6 +50,10 @@ class Fixed:
     def progress(self, step: int, t: float) -> float:
         """The share that is done."""
         return step / self.steps
+
+    def steps_at(self, speed: float, dx: float) -> int:
+        """All."""
+        return self.steps
 
 
 @value
@@ -80,6 +90,11 @@ class Courant:
         """The share that is done."""
         return t / self.end
 
+    def steps_at(self, speed: float, dx: float) -> int:
+        """The time over the length of a step, at most `most`."""
+        dt = self.next_dt(0, 0.0, speed, dx) or self.end
+        return math.ceil(min(self.end / dt, self.most)) if dt > 0.0 else self.most
+
 
 @value
 class Replay:
@@ -101,6 +116,10 @@ class Replay:
     def progress(self, step: int, t: float) -> float:
         """The share that is done."""
         return step / len(self.dts)
+
+    def steps_at(self, speed: float, dx: float) -> int:
+        """All."""
+        return len(self.dts)
 
 
 AnyClock = Fixed | Courant | Replay

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import xarray
 
 VerdictKind = Literal[
-    "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "too-many-steps", "interrupted"
+    "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "too-many-steps", "refused", "interrupted"
 ]  # fmt: skip
 
 ENDED: tuple[VerdictKind, ...] = ("finished", "at-rest")
@@ -38,8 +38,8 @@ class Verdict:
     """How a run ended; `str` says it in human words.
 
     Attributes:
-        kind: "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "too-many-steps" or
-            "interrupted".
+        kind: "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "too-many-steps", "refused" (a
+            step asks for what cannot be had) or "interrupted".
         message: One sentence.
         step: Number of the last step kept.
         cell: The cell at fault, if one is.
@@ -121,10 +121,10 @@ class Run:
 
     @property
     def mass_drift(self) -> float:
-        """Relative change of mass that no inflow accounts for; the coupling drift of scheme 3 is part of it."""
+        """Relative change of mass that no inflow accounts for; what scheme 3 and re-summing make is part of it."""
         mass = self.entries["mass"]
         entered = self.entries["inflow_left"][-1] + self.entries["inflow_right"][-1]
-        return float((mass[-1] - mass[0] - entered) / mass[0]) if mass[0] > 0 else 0.0
+        return (float(mass[-1] - mass[0] - entered) / float(mass[0])) if mass[0] > 0 else 0.0
 
     def to_xarray(self) -> xarray.Dataset:
         """Everything as one labelled dataset; each dump has axes of its own."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 import numpy as np
@@ -15,6 +16,9 @@ from .model.chute import Chute
 from .model.friction import Friction, Frictionless
 from .model.heap import Heap
 from .value import Number, value
+
+TINY = float(np.finfo(float).tiny)
+"""The smallest normal number; below it digits get lost."""
 
 
 @value
@@ -44,6 +48,8 @@ class Scene:
     title: str = ""
 
     def __post_init__(self) -> None:
+        if not TINY <= self.beta < math.inf:
+            raise InputError(f"beta = epsilon k cos zeta = {self.beta:g} is out of range; change epsilon or k")
         self.initial()
 
     @property
@@ -73,13 +79,15 @@ class Scene:
         u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
         return float(np.max(np.abs(u) + np.sqrt(2.0 * self.beta * h)))
 
+    @np.errstate(over="ignore", invalid="ignore")
     def initial(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Initial h and q = h u, the values at the cell centres, each of shape (nx,).
 
         A height below the smallest normal number, 2.2e-308, is dry.
 
         Raises:
-            InputError: A height is negative, or a value is not finite (the message names the place).
+            InputError: A height is negative, or a value or its momentum flux is not finite (the message names the
+                place).
         """
         x = self.cells.x
         h, u = self.heap(x)
@@ -90,5 +98,12 @@ class Scene:
             if bad.any():
                 i = int(np.flatnonzero(bad)[0])
                 raise InputError(f"heap: {name} {(h if name == 'height' else u)[i]:g} at x = {x[i]:g}; {remedy}")
-        h = np.where(h < np.finfo(float).tiny, 0.0, h)  # no velocity can be told from a height with few digits
-        return h, np.asarray(h * u, dtype=float)
+        h = np.where(h < TINY, 0.0, h)  # no velocity can be told from a height with few digits
+        q = np.asarray(h * u, dtype=float)
+        bad = ~(np.abs(u) * np.abs(q) + self.beta * h * h < math.inf)
+        if bad.any():
+            i = int(np.flatnonzero(bad)[0])
+            raise InputError(
+                f"heap: height {h[i]:g} and velocity {u[i]:g} at x = {x[i]:g} have no finite momentum flux"
+            )
+        return h, q

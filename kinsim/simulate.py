@@ -18,9 +18,9 @@ from .checkpoint import Checkpoint, Keeper, Kept, Nowhere, part, under
 from .clock import AnyClock, Courant, Fixed, Replay
 from .errors import InputError
 from .interrupt import Deferred
-from .kinetic.velocity import Uniform, Window
+from .kinetic.velocity import Uniform
 from .kinetic.wing import Density
-from .memory import require
+from .memory import require, require_history
 from .method import Kinetic, Macroscopic
 from .model.heap import Profile, Table
 from .run import Run, Verdict, VerdictKind, description
@@ -29,6 +29,7 @@ from .sleep import Awake
 from .stepper import make_stepper
 from .watch.causes import Causes
 from .watch.dump import Dump, Recorder
+from .watch.fault import find_fault
 from .watch.ledger import Ledger
 from .watch.survey import Survey
 
@@ -140,6 +141,7 @@ class Loop:
         self.scene, self.method, self.clock = scene, method, clock
         self.save_every, self.force = save_every, force
         self.h, self.q = scene.initial()
+        self.before = (self.h.copy(), self.q.copy())
         self.step, self.t = 0, 0.0
         self.dts: list[float] = []
         self.times: list[float] = []
@@ -186,12 +188,21 @@ class Loop:
 
     def start(self) -> None:
         """Keep the initial state; from now on time counts."""
+        self._foresee()
         self.began = time.perf_counter()
         self.ledger.start(self.h, self.q)
         self._save()
 
     def run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
-        """Step until the clock or a fault ends it."""
+        """Step until the clock or a fault ends it; what is refused in the first step is refused before the run."""
+        try:
+            return self._run(progress, interrupt)
+        except InputError as error:
+            if self.step == 0:
+                raise
+            return self.verdict("refused", f"{error}; stopped")
+
+    def _run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
         scene, clock, stepper, awake = self.scene, self.clock, self.stepper, self.awake
         dx, beta = scene.cells.dx, scene.beta
         sleepy = self._same_length()
@@ -210,6 +221,8 @@ class Loop:
                 asked = f"velocities up to {max(speed, self.fastest):.3g} ask for more than {clock.most} steps"
                 return self.verdict("too-many-steps", f"{asked}; stopped")
             courant = speed * dt / dx
+            if not courant < math.inf:
+                return self.verdict("non-finite", f"the Courant number of dt = {dt:.4g} is not finite; stopped")
             if courant > stepper.limit * (1.0 + ROUNDING) and not self.force:
                 if self.step == 0:
                     raise InputError(_over_the_bound(courant, dt, stepper.limit * dx / speed, clock, stepper.limit))
@@ -225,15 +238,16 @@ class Loop:
             h1, q1 = awake.h1, awake.q1
             if awake.at:
                 look = Survey.of(h1, q1, beta)
-            if look.bad >= 0:
-                place = f"cell {look.bad} (x = {scene.x[look.bad]:.4g})"
-                return self.verdict("non-finite", f"h or q is not finite in {place}; stopped", look.bad)
+            if cut:
+                books = books._replace(window_loss=books.window_loss + dx * cut)
+            fault = find_fault(look, h1, q1, self.ledger.with_these(books), dx, self.ledger.first_mass)
+            if fault:
+                place = "" if fault.cell is None else f" in cell {fault.cell} (x = {scene.x[fault.cell]:.4g})"
+                return self.verdict("non-finite", f"{fault.words}{place}; stopped", fault.cell)
             after = clock.time_after(self.step + 1, self.t, dt)
             self.still = self.still + 1 if look.q_max <= stepper.rest(look.h_max) else 0
             settled = clock.stop_at_rest and self.still > 0 and self._settled(h1, q1, look.h_max)
             last = self._accept(h1, q1, dt, after)
-            if cut:
-                books = books._replace(window_loss=books.window_loss + dx * cut)
             self.ledger.note(look, courant, books, awake.at.density if awake.at else None)
             self.fastest = look.fastest
             if last or self.step % self.save_every == 0:
@@ -252,7 +266,7 @@ class Loop:
         ledger = self.ledger
         where = (
             f"step {self.step + 1}: "
-            if kind in ("non-finite", "cfl-broken", "window-too-small", "too-many-steps")
+            if kind in ("non-finite", "cfl-broken", "window-too-small", "too-many-steps", "refused")
             else ""
         )
         notes = [f"{where}{message} at t = {self.t:.6g} after {self.step} steps"]
@@ -283,7 +297,7 @@ class Loop:
         numbers = (self.step, self.t, self.still, self.fastest, self.first_reach, self.reached, self.spent)
         own = {
             "numbers": np.array(numbers, dtype=float), "outside": np.array(self.outside),
-            "state": np.array([self.h, self.q]),
+            "state": np.array([self.h, self.q]), "before": np.array(self.before),
             "dts": np.array(self.dts), "times": np.array(self.times), "states": np.array(self.states),
         }  # fmt: skip
         kept = under("loop", own) | under("awake", self.awake.kept()) | under("ledger", self.ledger.kept())
@@ -302,6 +316,7 @@ class Loop:
         self.began = time.perf_counter() - spent
         self.step, self.still, self.outside = int(step), int(still), str(own["outside"])
         self.h[:], self.q[:] = own["state"]
+        self.before[0][:], self.before[1][:] = own["before"]
         self.dts, self.times = own["dts"].tolist(), own["times"].tolist()
         self.states = [(h, q) for h, q in own["states"]]
         self.awake.restore(part("awake", kept))
@@ -322,9 +337,9 @@ class Loop:
         """The run as a value; the last good state is its last row."""
         wall_time = self.spent
         if self.times[-1] != self.t:
-            moving = isinstance(self.method, Kinetic) and isinstance(self.method.velocity, Window)
-            shown = verdict.kind != "non-finite" and not moving and self.awake.at is self.stepper
-            self.ledger.save(self.h, self.q, f_is_of_state=shown)
+            self.stepper.begin(*self.before)  # once more, for f may belong to a step that was given up
+            self.stepper.advance(self.dts[-1])
+            self.ledger.save(self.h, self.q)
             self._save()
         return Run(
             scene=self.scene, method=self.method, clock=self.clock, t=np.array(self.times),
@@ -353,6 +368,7 @@ class Loop:
             recorder.record(self.stepper.now, self.step + 1, self.t, after, last)
         if self.causes:
             self.causes.note(h1, q1, dt)
+        self.before, (self.h, self.q) = (self.h, self.q), self.before
         self.h[:], self.q[:] = h1, q1
         self.step, self.t = self.step + 1, after
         self.dts.append(dt)
@@ -384,7 +400,16 @@ class Loop:
         self.stepper.advance(1e-3 * self.scene.cells.dx)
         self.first_reach = self.reached = self.stepper.reach()
 
+    def _foresee(self) -> None:
+        """Refuse a run whose rows will not fit; with a `Courant` clock as its first step lets foresee."""
+        steps = self.clock.steps_at(max(self.fastest, self.falling), self.scene.cells.dx)
+        kept = math.ceil(steps / self.save_every) + 1
+        require_history(kept, steps, self.h.size, f"{kept} rows and {steps} steps")
+
     def _save(self) -> None:
+        if len(self.states) & (len(self.states) - 1) == 0:  # twice as many may come before the next look
+            more = len(self.states)
+            require_history(more, self.step, self.h.size, f"{more} rows more")
         self.times.append(self.t)
         self.states.append((self.h.copy(), self.q.copy()))
         if self.causes:

@@ -33,6 +33,7 @@ class Books(NamedTuple):
     inflow_right: float
     coupling_drift: float
     window_loss: float
+    mended: float
 
 
 class Stepper:
@@ -80,13 +81,13 @@ class Stepper:
         walls = scheme.fluxes(now, wing, dt)  # (19), (24), (25)
         left, right, created = update(now.h, now.q, *walls, lam, now.h1, now.qhat)  # U^n - lam (F_{i+1/2} - F_{i-1/2})
         wing.transport(now, lam)  # f^{n+1} before the shift, (23)
-        self.projection.after_transport(now, self.density)
-        scheme.impulse(now, wing.pulled(now), dt)  # dt g h^{n+1}, (21), (22)
+        made = self.projection.after_transport(now, self.density)
+        made += scheme.impulse(now, wing.pulled(now), dt)  # dt g h^{n+1}, (21), (22)
         lost = wing.force(now)  # f(xi + dt g) <- f(xi), (23)
-        self.projection.after_force(now, self.density)  # U^{n+1}, (20)
+        made += self.projection.after_force(now, self.density)  # U^{n+1}, (20)
         if self._periodic:  # the two ends are one face
             left, right, created = 0.0, 0.0, created + left + right
-        return Books(dt * left, dt * right, dt * created, dx * lost)
+        return Books(dt * left, dt * right, dt * created, dx * lost, dx * made)
 
     def reach(self) -> float:
         """The outermost velocity of the states at U^n, face states included."""
@@ -112,19 +113,21 @@ class Sliding(Stepper):
         """From where `begin` stood to U^{n+1}, (24)."""
         now, F1 = self.now, self.now.F1
         self._fluxes()
-        self._move(dt)
+        mended = self._dx * self._move(dt)
         self.wing.transport(now, dt / self._dx)
         lost = self._dx * self.wing.force(now)
         if self._periodic:
-            return Books(0.0, 0.0, dt * (F1[0] - F1[-1]), lost)
-        return Books(dt * F1[0], -dt * F1[-1], 0.0, lost)
+            return Books(0.0, 0.0, dt * (F1[0] - F1[-1]), lost, mended)
+        return Books(dt * F1[0], -dt * F1[-1], 0.0, lost, mended)
 
     def _fluxes(self) -> None:
         self.wing.upwind_flux(self.now)
 
-    def _move(self, dt: float) -> None:
+    def _move(self, dt: float) -> float:
+        """The rest of the step; returns the mass that is mended, per dx."""
         now = self.now
         slide(now.h, now.u, now.q, now.F1, now.F2, *self._ground, dt, now.h1, now.qhat, now.J, now.q1)
+        return 0.0
 
 
 class Swept(Sliding):
@@ -166,9 +169,9 @@ class Settling(Sliding):
     def _fluxes(self) -> None:
         self.wing.held_flux(self.now)
 
-    def _move(self, dt: float) -> None:
+    def _move(self, dt: float) -> float:
         now = self.now
-        settle(*self._before, dt, now.h1, now.qhat, now.J, now.q1)
+        return float(settle(*self._before, dt, now.h1, now.qhat, now.J, now.q1))
 
 
 class Heun(Stepper):

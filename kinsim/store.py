@@ -53,7 +53,9 @@ def replacing(path: str | Path) -> Iterator[str]:
     try:
         yield name
         os.chmod(name, 0o666 & ~_umask())
+        _flush(name)
         os.replace(name, path)
+        _flush(path.parent)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error}); nothing was kept there") from None
     finally:
@@ -89,6 +91,17 @@ def write_bytes(content: bytes | memoryview, path: str | Path) -> Path:
     with replacing(path) as name:
         Path(name).write_bytes(content)
     return Path(path)
+
+
+def _flush(path: str | Path) -> None:
+    """On the disk before the next line: a name must not outlive a power cut that its content does not."""
+    if os.name == "nt" and Path(path).is_dir():  # Windows opens no folders, and keeps names by itself
+        return
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
 
 
 def _umask() -> int:

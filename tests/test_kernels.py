@@ -61,7 +61,8 @@ def example(kernel: object) -> list[object]:
         elif (
             kind == "Array"
             and name in ghosted
-            and name_of in ("balanced", "sliding", "stopping", "update", "move", "mean_of_stages", "candidate")
+            and name_of
+            in ("balanced", "sliding", "keep_dry", "stopping", "update", "move", "mean_of_stages", "candidate")
             and not (name == "h" and name_of == "split")
         ):
             arguments.append(dice.uniform(0.1, 1.0, nx + 2))

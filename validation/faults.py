@@ -2,7 +2,9 @@
 
 *Lost* counts what must never happen: another exception than the one-line refusal, a file that can no longer be read, a
 run that differs in one bit from what it would have been. Scene files and tables are mutated at random: bytes changed,
-cut out, doubled, numbers and names of other lines put in; what is read is started, too, where it is small.
+cut out, doubled, numbers and names of other lines put in; what is read is started, too, where it is small. Whole runs
+are drawn from inputs as extreme as can be, in all schemes, orders, equilibria, forces, grids and clocks: each is
+refused in one line, or stopped with a verdict that names its step, or sound: all of it finite, its mass in the books.
 """
 
 from __future__ import annotations
@@ -13,12 +15,14 @@ import resource
 import signal
 import time
 import tomllib
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from claims import Chapter, run
+from laboratory.extremes import draw, wrong
 
 from kinsim import Cells, Checkpoint, Fixed, InputError, Kinetic, Macroscopic, Run, Table, Uniform, load_scene, simulate
 from kinsim import resume as go_on
@@ -37,6 +41,7 @@ def main(chapter: Chapter) -> None:
     with TemporaryDirectory() as scratch:
         folder = Path(scratch)
         found = {
+            "whole runs over extreme inputs": extreme(many // 5),
             "scene files, mutated": scenes(many),
             "tables, mutated": tables(folder, many // 10),
             "checkpoints, truncated or with a byte changed": damaged(folder, many // 10),
@@ -64,6 +69,20 @@ def counted(many: int, attempt: Callable[[random.Random], object]) -> Counted:
             lost += 1
             print(f"attempt {number}: {type(error).__name__}: {error}"[:300])
     return many, refused, lost
+
+
+def extreme(many: int) -> Counted:
+    """Heights, velocities, slopes, steps and methods drawn as far out as numbers go; each run is looked over."""
+
+    def attempt(dice: random.Random) -> None:
+        asked = draw(dice)
+        bad = wrong(asked, asked.run())
+        if bad:
+            raise RuntimeError(bad)
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return counted(many, attempt)
 
 
 def mutated(text: bytes, dice: random.Random) -> bytes:

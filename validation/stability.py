@@ -21,7 +21,7 @@ from claims import Chapter, run
 
 from kinsim import Cells, Fitted, Fixed, Frictionless, Kinetic, Macroscopic, Profile, Scene, atlas, simulate
 from kinsim.plot.atlas import draw_atlas
-from kinsim.stability.axes import AXES
+from kinsim.stability.axes import USUAL
 from kinsim.stability.judge import CLASSES
 
 ROBUST = {
@@ -48,7 +48,8 @@ def main(chapter: Chapter) -> None:
     rows, limits = [], []
     for name, method in methods.items():
         planes = [("courant", "zeta")] if chapter.full and name in ("scheme-1", "scheme-4") else []
-        found = atlas(method, (*AXES, *planes), steps=200 if chapter.full else 30)
+        long = ["steps"] if chapter.full and name in ("scheme-1", "scheme-4", "scheme-4-second-order") else []
+        found = atlas(method, (*USUAL, *long, *planes), steps=200 if chapter.full else 30)
         axis, word = found["axis"].to_numpy(), found["class"].to_numpy()
         line = found["across"].to_numpy() == ""
         inside = line & (axis != "courant")

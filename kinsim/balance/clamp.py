@@ -5,16 +5,32 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel
+from ..kernel import kernel, kernel_part
+from .impulse import DRY
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-DRY = float(np.finfo(float).tiny)
-"""The smallest height whose velocity has all its digits: the smallest normal number. It scales with no unit."""
-
 SHY = 1.0 - 1e-13
 """Keeps the pull at rest below what it balances, rounding of heights a thousand jumps high included."""
+
+
+@kernel_part
+def nothing(h: float) -> float:
+    """0, but of a number that is none, which has to stay one."""
+    return 0.0 + 0.0 * h
+
+
+@kernel
+def below_nothing(h1: Array) -> float:
+    """How far heights lie below 0 in sum: what cutting them at 0 will make."""
+    any_does = False
+    for i in range(h1.size):
+        any_does |= h1[i] < 0.0
+    made = 0.0
+    for i in range(h1.size if any_does else 0):
+        made -= min(h1[i], 0.0)
+    return made
 
 
 @kernel
@@ -31,8 +47,8 @@ def clip_velocity(low: Array, high: Array, h1: Array, qhat: Array) -> None:
         among = qhat[i] if v >= slowest else slowest * h1[i]
         among = quickest * h1[i] if v > quickest else among
         among = qhat[i] if slowest > quickest else among  # a film between nodes: no particle is seen, and none came
-        qhat[i] = among if h1[i] >= DRY else 0.0
-        h1[i] = h1[i] if h1[i] >= DRY else 0.0
+        qhat[i] = 0.0 if h1[i] < DRY else among
+        h1[i] = nothing(h1[i]) if h1[i] < DRY else h1[i]
 
 
 @kernel

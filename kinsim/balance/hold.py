@@ -52,7 +52,7 @@ def judge_faces(
         a, b = h[i], h[i + 1]
         e[i] = min(max(b - a, low), high)
         w = (a * abs(u[i]) + b * abs(u[i + 1])) / (a + b) if a + b > 0.0 else 0.0
-        share = max(1.0 - w * (w + math.sqrt(2.0 * beta * min(a, b))) / slowing, 0.0)
+        share = max(1.0 - w * (w + math.sqrt(2.0 * beta * max(min(a, b), 0.0))) / slowing, 0.0)
         theta[i] = share if R > 0.0 else 0.0
     for i in range(e.size):
         a, b = h[i], h[i + 1]

@@ -14,6 +14,12 @@ from ..kernel import kernel, kernel_inner
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+DRY = float(np.finfo(float).tiny)
+"""The smallest height whose velocity has all its digits: the smallest normal number. It scales with no unit."""
+
+ROUNDING = 64.0 * float(np.finfo(float).eps)
+"""By less than this share of the heights around does rounding miss a height."""
+
 
 @kernel
 def acceleration(v: float, s: float, R: float) -> float:
@@ -36,6 +42,19 @@ def sliding(h: Array, u: Array, pulled: Array, s: float, R: float, beta: float, 
         else:
             g = acceleration(u[i + 1], s, R)
         J[i] = dt * g * pulled[i]
+
+
+@kernel
+def keep_dry(h: Array, h1: Array, qhat: Array) -> None:
+    """Scheme 1 under (28): a height below the smallest normal number, or below 0 by rounding, is dry; h is ghosted.
+
+    All three heights could come through a face, each with its rounding; what is below 0 by more broke (28), and stays.
+    """
+    for i in range(h1.size):
+        rounding = ROUNDING * ((h[i] + h[i + 2]) + h[i + 1])
+        dry = (h1[i] < DRY) & (h1[i] >= -rounding)
+        qhat[i] = 0.0 if dry else qhat[i]
+        h1[i] = 0.0 if dry else h1[i]
 
 
 @kernel

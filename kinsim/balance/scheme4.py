@@ -12,7 +12,7 @@ import numpy as np
 
 from ..model.boundary import ends, extend_shown
 from ..scene import Scene
-from .clamp import clamped, clip_velocity
+from .clamp import below_nothing, clamped, clip_velocity
 from .hold import hold_back, judge_faces, rest_flux
 from .reflect import find_static, reflected, stopped
 from .slopes import reconstruct
@@ -50,10 +50,12 @@ class Held:
         rest_flux(to.h_left, now.still, self._ground[2], now.F1, now.F2)
         return Walls.of(now.F1, now.F2)
 
-    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> float:
+        mended = below_nothing(now.h1)
         clip_velocity(now.low, now.high, now.h1, now.qhat)
         faces = (now.e, now.theta, now.still)
         clamped(now.h, now.h1, now.qhat, pulled, *faces, *self._ground, dt, *self._walls, now.J)
+        return mended
 
 
 class HeldSloped(Held):
@@ -71,9 +73,9 @@ class HeldSloped(Held):
         reconstruct(now.h, now.u, now.theta, self._steepest, beta, fastest, *now.minus, *now.plus)
         extend_shown(self._boundary, now.minus, now.plus)
 
-    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> float:
         """The impulse of a stage acts on h^n, at least half and at most twice h^{n+1}."""
-        super().impulse(now, np.clip(now.h[1:-1], 0.5 * now.h1, 2.0 * now.h1), dt)
+        return super().impulse(now, np.clip(now.h[1:-1], 0.5 * now.h1, 2.0 * now.h1), dt)
 
 
 class Reflecting(Held):
@@ -91,7 +93,9 @@ class Reflecting(Held):
         reflected(half[:2], half[2:], now.static, now.F1, now.F2, now.B2)
         return Walls(now.F1[:-1], now.B2[:-1], now.F1[1:], now.F2[1:])
 
-    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> float:
         s, R, _, _ = self._ground
+        mended = below_nothing(now.h1)
         clip_velocity(now.low, now.high, now.h1, now.qhat)
         stopped(pulled, now.qhat, now.leftover, now.static, s, R, dt, now.J)
+        return mended

@@ -9,7 +9,7 @@ import numpy as np
 from ..kernel import kernel
 from ..model.boundary import extend_flag
 from ..scene import Scene
-from .impulse import find_slow, sliding, stopping
+from .impulse import find_slow, keep_dry, sliding, stopping
 from .interface import Array, balanced
 from .stages import Flags, Stages
 from .update import Walls
@@ -34,8 +34,8 @@ class Scheme(Protocol):
     def fluxes(self, now: Stages, wing: Wing, dt: float) -> Walls:
         """The fluxes that each cell takes at its walls."""
 
-    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
-        """Write `J`; `pulled`, shape (nx,), is the height that the force acts on."""
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> float:
+        """Write `J`; `pulled`, shape (nx,), is the height that the force acts on; returns what this mends, per dx."""
 
 
 class Scheme1:
@@ -54,8 +54,10 @@ class Scheme1:
         wing.upwind_flux(now)
         return Walls.of(now.F1, now.F2)
 
-    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> float:
+        keep_dry(now.h, now.h1, now.qhat)
         sliding(now.h, now.u, pulled, *self._ground, dt, now.J)
+        return 0.0
 
 
 class Scheme2(Scheme1):
@@ -81,8 +83,9 @@ class Scheme2(Scheme1):
         """Write `at_left` and `at_right`: where cells take the balanced flux."""
         now.at_left[:] = now.at_right[:] = True
 
-    def impulse(self, now: Stages, pulled: Array, dt: float) -> None:
+    def impulse(self, now: Stages, pulled: Array, dt: float) -> float:
         stopping(now.h, now.q, pulled, now.h1_candidate, now.slow[1:-1], *self._ground, dt, now.J)
+        return 0.0
 
 
 class Scheme3Cell(Scheme2):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel
-from .clamp import clamped, clip_velocity
+from .clamp import below_nothing, clamped, clip_velocity
 from .hold import hold_back, judge_faces, rest_flux
 from .slide import show_ends
 from .stages import largest, quicken, split, support
@@ -47,11 +47,16 @@ def settle(
     h: Array, q: Array, h_left: Array, e: Array, theta: Array, still: Flags, low: Array, high: Array,
     F1: Array, F2: Array, s: float, R: float, beta: float, dx: float, wall_left: bool, wall_right: bool, dt: float,
     h1: Array, qhat: Array, J: Array, q1: Array,
-) -> None:  # fmt: skip
-    """U^{n+1} = U^n - lam (F_{i+1/2} - F_{i-1/2}) + (0, J) with the clamped impulse, and the stages between."""
+) -> float:  # fmt: skip
+    """U^{n+1} = U^n - lam (F_{i+1/2} - F_{i-1/2}) + (0, J) with the clamped impulse, and the stages between.
+
+    Returns the mass that heights below 0 are mended with, per dx.
+    """
     rest_flux(h_left, still, beta, F1, F2)
     move(h, q, F1[:-1], F2[:-1], F1[1:], F2[1:], dt / dx, h1, qhat)
+    mended = below_nothing(h1)
     clip_velocity(low, high, h1, qhat)
     clamped(h, h1, qhat, h1, e, theta, still, s, R, beta, dx, dt, wall_left, wall_right, J)
     for i in range(q.size):
         q1[i] = qhat[i] + J[i]
+    return mended

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel, kernel_part
-from .impulse import sliding
+from .impulse import keep_dry, sliding
 from .update import move
 
 Array = NDArray[np.float64]
@@ -41,6 +41,7 @@ def slide(
         end = min(begin + TILE, q.size)
         around, here, after = slice(begin, end + 2), slice(begin, end), slice(begin + 1, end + 1)
         move(h[around], q[here], F1[here], F2[here], F1[after], F2[after], lam, h1[here], qhat[here])
+        keep_dry(h[around], h1[here], qhat[here])
         sliding(h[around], u[around], h1[here], s, R, beta, dx, dt, J[here])
         for i in range(begin, end):
             q1[i] = qhat[i] + J[i]

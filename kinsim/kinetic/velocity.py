@@ -15,8 +15,11 @@ from ..value import Number, Whole, kind, value
 
 Beyond = Literal["stop", "warn"]
 
-WIDEST = 1e6
-"""Velocity cells on one side beyond which a window is refused."""
+FASTEST = 1e100
+"""Velocities beyond are refused: third moments have to be numbers, and so have sums of them."""
+
+WIDEST = 1e5
+"""Velocity cells on one side beyond which a window is refused: a step would take a second for every hundred cells."""
 
 
 @value
@@ -49,7 +52,7 @@ class Uniform:
         """The same grid for every reach."""
         if self.bound is None:
             raise ValueError("a velocity grid needs its bound; simulate finds one, or give it")
-        return Grid(self.count, 2.0 * self.bound / self.count)
+        return _within_numbers(Grid(self.count, 2.0 * self.bound / self.count))
 
     def fits(self, grid: Grid, reach: float) -> bool:
         """The grid stays."""
@@ -82,7 +85,7 @@ class Window:
             raise InputError(
                 f"velocity: a window of {2 * half:.3g} cells is asked for; take dxi well above {self.dxi:g}"
             )
-        return Grid(2 * math.ceil(half), self.dxi)
+        return _within_numbers(Grid(2 * math.ceil(half), self.dxi))
 
     def fits(self, grid: Grid, reach: float) -> bool:
         """Whether `grid` still serves."""
@@ -132,3 +135,11 @@ class Grid:
     def xi(self) -> NDArray[np.float64]:
         """Centres, ascending, shape (count,)."""
         return np.concatenate([-self.side[::-1], self.side])
+
+
+def _within_numbers(grid: Grid) -> Grid:
+    """`grid`, if sums over it cannot overflow."""
+    if not grid.bound <= FASTEST:
+        asked = f"a window up to {grid.bound:.3g} is asked for, at most {FASTEST:g} can be had"
+        raise InputError(f"velocity: {asked}; take shorter steps or smaller velocities")
+    return grid

@@ -11,6 +11,9 @@ from pydantic import Field
 from ..memory import require
 from ..value import Number, Whole, value
 
+TINY = float(np.finfo(float).tiny)
+"""The smallest normal number; below it digits get lost."""
+
 BYTES = 400
 """That a cell takes in a run: about fifty numbers."""
 
@@ -26,6 +29,10 @@ class Cells:
     def __post_init__(self) -> None:
         if not self.left < self.right:
             raise ValueError(f"left = {self.left:g} is not below right = {self.right:g}; exchange or change them")
+        if not TINY <= self.dx < float("inf"):
+            raise ValueError(
+                f"{self.count} cells from {self.left:g} to {self.right:g} are {self.dx:g} long; change them"
+            )
         require(float(self.count) * BYTES, f"{self.count} cells")
 
     @property

@@ -21,22 +21,19 @@ from ..studies.engine import Tell
 from ..studies.member import Member, Request
 from ..studies.record import Keep, Record, failed, kept_in
 from ..studies.study import collect
-from .axes import AXES, Axis, axis
+from .axes import USUAL, Axis, axis
 from .judge import MEASURES, judge
 from .setting import Setting
 
 if TYPE_CHECKING:
     import xarray
 
-EVERY = 10
-"""Steps from one look at the state to the next."""
-
 Found = dict[str, Any]
 
 
 def atlas(
     method: Kinetic | Macroscopic = Macroscopic(),  # noqa: B008
-    axes: Sequence[str | tuple[str, str]] = tuple(AXES),
+    axes: Sequence[str | tuple[str, str]] = USUAL,
     *,
     steps: int = 200,
     keep: str | Path | None = None,
@@ -48,7 +45,8 @@ def atlas(
 
     Args:
         method: How it is computed.
-        axes: Names of axes, see `kinsim.stability.axes.AXES`, or pairs of them for a plane.
+        axes: Names of axes, see `kinsim.stability.axes.AXES`, or pairs of them for a plane. The axis "steps", up to
+            5000 times as many, takes long and is run when it is named.
         steps: About so many steps are taken at each point.
         keep, resume, workers: As in `study`.
         tell: Called with what is under way and the share that is done.
@@ -104,14 +102,15 @@ def _places(setting: Setting, first: Axis, second: Axis | None) -> list[Place]:
 
 def _run(places: Sequence[Place], forced: bool, kept: Keep, workers: int, tell: Tell) -> list[tuple[Found, Found]]:
     """What each setting and its disturbed twin leave behind; those that cannot be built are refused."""
-    asked = Request(fields=("h", "q", "dt"), save_every=EVERY, force=forced)
+    asked = Request(fields=("h", "q", "dt"), force=forced)
     members: dict[str, Member] = {}
     keys: list[str] = []
     found: dict[str, Record] = {}
     for number, place in enumerate(places):
         try:
             setting = place.setting()
-            member = Member(setting.scene, setting.way, setting.clock, asked)
+            often = replace(asked, save_every=setting.every)
+            member = Member(setting.scene, setting.way, setting.clock, often)
         except InputError as error:
             found[f"{number}"] = failed("refused", str(error))
             keys.append(f"{number}")
@@ -125,7 +124,7 @@ def _run(places: Sequence[Place], forced: bool, kept: Keep, workers: int, tell: 
         if record.arrays.get("history_dt", np.empty(0)).size and record.figures["verdict_kind"] != "refused":
             member, heap = members[key], place.setting().nudged
             same = Replay(tuple(record.arrays["history_dt"].tolist()), end=record.figures["t"])
-            forced_too = replace(asked, force=True)
+            forced_too = replace(member.request, force=True)
             twins[key] = Member(replace(member.scene, heap=heap), member.method, same, forced_too)
     again = collect(
         {twin.key: twin for twin in twins.values()},

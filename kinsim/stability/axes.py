@@ -56,8 +56,12 @@ AXES = {
     "dx": Axis("dx: velocity cells per pull", "dx", (1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6)),
     "mass": Axis("mass", "mass", ("hump", "one cell", "none"), labels=("hump", "one cell", "none")),
     "cells": Axis("cells", "count", (2, 3, 4, 5, 8, 40, 400)),
+    "steps": Axis("steps, times those of other axes", "times", (0.05, 0.5, 5.0, 50.0, 500.0, 5000.0)),
 }  # fmt: skip
 """By name."""
+
+USUAL = tuple(name for name in AXES if name != "steps")
+"""Those that take seconds."""
 
 
 def axis(name: str) -> Axis:

@@ -38,7 +38,7 @@ def atlas(
     from ..shell import keep_apart
     from ..store import check_destination, write_netcdf
     from .atlas import atlas
-    from .axes import AXES
+    from .axes import USUAL
 
     planes = [tuple(one.split(",")) for one in plane or ()]
     if any(len(one) != 2 for one in planes):
@@ -51,7 +51,7 @@ def atlas(
     if plot:
         check_picture(plot)
     keep_apart(out, plot)
-    asked = [*(axis or (() if planes else AXES)), *((one, two) for one, two in planes)]
+    asked = [*(axis or (() if planes else USUAL)), *((one, two) for one, two in planes)]
     with Watched(quiet) as progress:
         found = atlas(method, asked, steps=steps, keep=keep, resume=resume, workers=workers, tell=progress.tell)
     if out:

@@ -20,7 +20,7 @@ CLASSES: dict[Class, str] = {
     "exact": "nothing had to change, and not a bit did",
     "stable": "bounded, and within all measures below",
     "repaired": "stable, with a repair in the books: a window that cut, mass made at faces, a fallback of M",
-    "oscillating": "energy rises, noise grows, steps shrink without end, heights fall below 0, or mass goes unbooked",
+    "oscillating": "energy rises, noise grows, h zigzags, steps shrink, heights fall below 0, or mass goes unbooked",
     "refused": "not computed, or stopped, with a reason",
     "non-finite": "stopped at a number that is none",
 }
@@ -40,7 +40,11 @@ BOOKED = 1e-12
 UNBOOKED = 1e-9
 """So much of the mass may come or go without being booked: rounding."""
 
-MEASURES = ("drift", "least", "rise", "growth", "variation")
+TEETH = 0.5
+"""So much of its height may the mass go up and down from cell to cell: a spike of one cell does by 1, one that stands
+at a wall, into which a fast mass piles up, by 1/4."""
+
+MEASURES = ("drift", "least", "rise", "growth", "variation", "zigzag")
 
 
 def judge(
@@ -56,7 +60,8 @@ def judge(
     Returns:
         The word; and drift: |relative change of mass|, least: the lowest over the highest height, rise: the largest
         rise of energy over all energy, growth: of the disturbance, variation: total variation of h at the end over
-        that at the start. NaN where nothing was run.
+        that at the start, which rises where a mass piles up and so is not judged, zigzag: the part of it, over the
+        highest height, that is up and down from cell to cell, at its largest. NaN where nothing was run.
     """
     unknown = dict.fromkeys(MEASURES, math.nan)
     kind = run["verdict_kind"]
@@ -73,13 +78,15 @@ def judge(
         "rise": rise(scene, h, q),
         "growth": growth(h, other),
         "variation": float(np.abs(np.diff(h[-1])).sum() / (np.abs(np.diff(h[0])).sum() or 1.0)),
+        "zigzag": zigzag(h),
     }
     mass = float(h[0].sum()) * scene.cells.dx
-    booked = sum(abs(run.get(name, 0.0)) for name in ("window_loss", "coupling_drift"))
+    booked = sum(abs(run.get(name, 0.0)) for name in ("window_loss", "coupling_drift", "mended"))
     unbooked = found["drift"] > UNBOOKED and not found["drift"] * mass <= booked * (1.0 + UNBOOKED)
     if kind in ENDED and nudged["verdict_kind"] not in ENDED:  # noise of 1e-9 stopped it
         found["growth"] = math.inf
     calm = found["rise"] <= RISE and found["growth"] <= GROWTH and found["least"] >= -BELOW
+    calm &= found["zigzag"] <= TEETH
     if kind == "too-many-steps" or unbooked or not calm:
         return "oscillating", found
     if np.array_equal(h[0], h[-1]) and np.array_equal(q[0], q[-1]):
@@ -102,6 +109,19 @@ def rise(scene: Scene, h: Array, q: Array) -> float:
     unknown = abs(scene.chute.sin) * scene.cells.dx * float(h[0].sum())
     most = float(np.max(energy - np.minimum.accumulate(energy)))
     return max(most - unknown, 0.0) / size if size > 0.0 else 0.0
+
+
+def zigzag(h: Array) -> float:
+    """How much more of the total variation of h over its highest than at the start is up and down from cell to cell.
+
+    That is what a mean over a cell and its neighbours, with weights 1/4, 1/2, 1/4, takes away: all of a wave of two
+    cells, nothing of what rises or falls for long.
+    """
+    unit = float(np.max(h)) or 1.0
+    wide = np.pad(h / unit, ((0, 0), (1, 1)), mode="edge")
+    calm = 0.25 * (wide[:, :-2] + wide[:, 2:]) + 0.5 * wide[:, 1:-1]
+    teeth = np.abs(np.diff(h / unit)).sum(axis=1) - np.abs(np.diff(calm)).sum(axis=1)
+    return float(np.max(teeth - teeth[0]))
 
 
 def growth(h: Array, other: Array) -> float:

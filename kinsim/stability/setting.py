@@ -25,6 +25,9 @@ Mass = Literal["hump", "one cell", "none"]
 NUDGE = 1e-9
 """Relative noise of the disturbed twin of a run."""
 
+EVERY = 10
+"""Steps from one look at the state to the next, in a run that is not made longer."""
+
 MOST = 20
 """So many times the steps asked for are taken at most."""
 
@@ -36,7 +39,7 @@ class Setting:
     Attributes:
         method: How it is computed.
         number: The Courant number; None takes 0.9 of the method's limit.
-        steps: About so many steps are taken.
+        steps, times: About times x steps are taken.
         count, dx: The cells.
         scale: The height of the hump.
         ratio: The left half is so many times higher than the right one.
@@ -49,6 +52,7 @@ class Setting:
     method: Kinetic | Macroscopic
     number: float | None = None
     steps: int = 200
+    times: float = 1.0
     count: int = 40
     dx: float = 0.05
     scale: float = 1.0
@@ -96,7 +100,12 @@ class Setting:
         scene = self.scene
         number = 0.9 * largest_courant(self.method) if self.number is None else self.number
         fastest = scene.fastest
-        way = self.steps * number * scene.cells.dx
+        way = self.times * self.steps * number * scene.cells.dx
         ends = [math.sqrt(2.0 * way / pull) for pull in [abs(scene.chute.sin) + scene.resistance] if pull > 0.0]
         end = min([*ends, *([way / fastest] if fastest > 0.0 else [])], default=way)
-        return Courant(number, end, most=MOST * self.steps)
+        return Courant(number, end, most=math.ceil(MOST * max(self.times, 1.0) * self.steps))
+
+    @property
+    def every(self) -> int:
+        """Steps from one look at the state to the next."""
+        return math.ceil(EVERY * max(self.times, 1.0))

@@ -26,9 +26,10 @@ COLUMNS = {
     "inflow_right": "mass that entered through the right end so far",
     "coupling_drift": "mass made so far at faces whose two cells took different fluxes",
     "window_loss": "mass that f lost so far over the edge of the velocity window",
+    "mended": "mass made so far where U was summed anew from f (window loss included) or a height below 0 was cut",
     "held": "mass that static friction held back at the faces in the step before",
 }
-"""mass(t) - mass(0) = inflow_left + inflow_right + coupling_drift to rounding, unless U is summed anew from f."""
+"""mass(t) - mass(0) = inflow_left + inflow_right + coupling_drift + mended, to rounding."""
 
 DENSITY_COLUMNS = {
     "sampling_mass": "mass of f less mass of the state",
@@ -81,8 +82,12 @@ class Ledger:
                 self._note_status(density.status, slice(1, -1))
                 self._note_status(density.face_status, slice(None))
 
-    def save(self, h: Array, q: Array, started: bool = True, f_is_of_state: bool = True) -> None:
-        """Make a row of what was noted since the row before; f may belong to a step that was given up."""
+    def with_these(self, books: Books) -> Books:
+        """What the books show after a step with these."""
+        return Books(*(before + part for before, part in zip(self._booked, books, strict=True)))
+
+    def save(self, h: Array, q: Array, started: bool = True) -> None:
+        """Make a row of what was noted since the row before."""
         dx = self._scene.cells.dx
         row = {
             "mass": math.fsum(h) * dx, "momentum": math.fsum(q) * dx,
@@ -94,7 +99,7 @@ class Ledger:
         if density is not None:
             row |= dict.fromkeys(DENSITY_COLUMNS, 0.0)
             if started:
-                row |= departure(density, h, q, dx) if f_is_of_state else dict.fromkeys(DEPARTURE, math.nan)
+                row |= departure(density, h, q, dx)
                 row |= {"f_min": self._f_min, **self._fallen()}
                 row |= {"iterations": self._iterations, "residual": self._residual}
         self._rows.append(row)
@@ -103,6 +108,11 @@ class Ledger:
     def columns(self) -> dict[str, Array]:
         """The ledger, each column of shape (nt,)."""
         return {name: np.array([row[name] for row in self._rows]) for name in self._rows[0]}
+
+    @property
+    def first_mass(self) -> float:
+        """The mass in the beginning."""
+        return self._rows[0]["mass"]
 
     def kept(self) -> Kept:
         """The rows so far, and what was noted since the last one."""
@@ -149,9 +159,6 @@ def held(now: Stages) -> float:
     back = np.minimum(now.theta * np.maximum(-now.e, 0.0), now.h[:-1])
     forth = np.minimum(now.theta * np.maximum(now.e, 0.0), now.h[1:])
     return 0.5 * float(math.fsum(back) + math.fsum(forth))
-
-
-DEPARTURE = ("sampling_mass", "sampling_momentum", "f_distance", "f_tail")
 
 
 def departure(density: Density, h: Array, q: Array, dx: float) -> dict[str, float]:

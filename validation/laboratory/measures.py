@@ -59,12 +59,10 @@ def distance(run: Run, other: Run) -> float:
 def unbooked_drift(run: Run) -> float:
     """Relative change of mass that the ledger does not account for.
 
-    It books inflow, what mixed faces make and, where U is summed anew from f, what f lost over the window's edge.
+    It books inflow, what mixed faces make and, where U is summed anew from f, what that makes.
     """
     at_end = {name: column[-1] for name, column in run.entries.items()}
-    booked = at_end["inflow_left"] + at_end["inflow_right"] + at_end["coupling_drift"]
-    if run.method.projection == "re-summed":
-        booked -= at_end["window_loss"]
+    booked = at_end["inflow_left"] + at_end["inflow_right"] + at_end["coupling_drift"] + at_end["mended"]
     first = run.entries["mass"][0]
     return float(abs(at_end["mass"] - first - booked) / first)
 

@@ -15,6 +15,9 @@ from .few_nodes import few_nodes
 from .rows import Array, put
 from .status import CONVERGED, Status
 
+LARGEST = float(np.finfo(float).max)
+"""A residual that is larger is written as this."""
+
 
 @dataclass(frozen=True)
 class Matched:
@@ -110,8 +113,9 @@ def matched_sides(h: float, u: float, beta: float, dxi: float, P: Array, N: Arra
     fell = few_nodes(h, u, beta, dxi, True, P, N)
     s0, s1, s2 = 0.0, 0.0, 0.0
     for k in range(P.size):
-        yp, yn = ((k + 0.5) * dxi - u) / c, (-(k + 0.5) * dxi - u) / c
-        s0 += weight * (P[k] + N[k])
-        s1 += weight * (P[k] * yp + N[k] * yn)
-        s2 += weight * (P[k] * yp * yp + N[k] * yn * yn)
-    return sweep, max(abs(1.0 - s0), abs(s1), abs(0.25 - s2)), fell
+        for y, f in ((((k + 0.5) * dxi - u) / c, weight * P[k]), ((-(k + 0.5) * dxi - u) / c, weight * N[k])):
+            if f > 0.0:
+                s0 += f
+                s1 += f * y
+                s2 += f * y * y
+    return sweep, min(max(abs(1.0 - s0), abs(s1), abs(0.25 - s2)), LARGEST), fell
