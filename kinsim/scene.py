@@ -11,14 +11,11 @@ from pydantic import Field
 
 from .errors import InputError
 from .model.boundary import Boundary
-from .model.cells import Cells
+from .model.cells import TINY, Cells
 from .model.chute import Chute
 from .model.friction import Friction, Frictionless
 from .model.heap import Heap
 from .value import Number, value
-
-TINY = float(np.finfo(float).tiny)
-"""The smallest normal number; below it digits get lost."""
 
 
 @value
