@@ -4,7 +4,8 @@ Each point of the maps is a run of about 200 steps of a hump on a layer between 
 its wave speed; one thing is made extreme at a time, or two in a plane. A second run starts with noise of 1e-9 and takes
 the same steps. *Stable* is measured: energy, that of place included, must not rise, the noise must not grow beyond
 1e-4 of the highest mass, h must not zigzag, heights must not fall below 0, and no mass may go unbooked. *Repaired* is
-stable with something in the books: a window of few nodes that cut, mass made at mixed faces. On the axis of the Courant number the bound (28) is broken on demand.
+stable with something in the books: a window of few nodes that cut, mass made at mixed faces. On the axis of the
+Courant number the bound (28) is broken on demand.
 
 The schemes of the paper are mapped beside: scheme 1 cannot stop a thin layer, scheme 2 blows up, scheme 3 makes mass.
 The last table follows a wave on a ring for a million steps.
