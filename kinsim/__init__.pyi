@@ -13,8 +13,10 @@ from .measure.crosscheck import CrossCheck as CrossCheck
 from .measure.crosscheck import crosscheck as crosscheck
 from .method import Kinetic as Kinetic
 from .method import Macroscopic as Macroscopic
+from .model.boundary import Inflow as Inflow
 from .model.cells import Cells as Cells
 from .model.chute import ConstantSlope as ConstantSlope
+from .model.chute import SmoothChute as SmoothChute
 from .model.friction import Coulomb as Coulomb
 from .model.friction import Frictionless as Frictionless
 from .model.heap import Blocks as Blocks
@@ -23,6 +25,14 @@ from .model.heap import Parabola as Parabola
 from .model.heap import Profile as Profile
 from .model.heap import Sine as Sine
 from .model.heap import Table as Table
+from .model.slope import Arc as Arc
+from .model.slope import Bend as Bend
+from .model.slope import Bowl as Bowl
+from .model.slope import Crest as Crest
+from .model.slope import Exponential as Exponential
+from .model.slope import SlopeFormula as SlopeFormula
+from .model.slope_table import SlopePoints as SlopePoints
+from .model.slope_table import SlopeTable as SlopeTable
 from .read import load_scene as load_scene
 from .resume import resume as resume
 from .run import Run as Run

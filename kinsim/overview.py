@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 from pydantic import TypeAdapter
 from rich.console import Console
 from rich.markup import escape
@@ -67,8 +68,14 @@ def filled_in(file: SceneFile, keys: Mapping[str, Any]) -> None:
         ("R", file.resistance),
         ("Courant number of the first step", first_courant(file)),
     ):
-        table.add_row(key, f"{value:.6g}", "[cyan]follows[/]")
+        table.add_row(key, _figure(value), "[cyan]follows[/]")
     Console().print(table)
+
+
+def _figure(value: Any) -> str:
+    """A number, or from where to where it varies."""
+    low, high = float(np.min(value)), float(np.max(value))
+    return f"{low:.6g}" if low == high else f"{low:.6g} to {high:.6g}"
 
 
 def _flat(keys: Mapping[str, Any], before: str = "") -> dict[str, Any]:

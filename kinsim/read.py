@@ -93,9 +93,16 @@ def read_keys(name_or_path: str | Path) -> dict[str, Any]:
         raise InputError(f"{name_or_path}: is not UTF-8 text; give a scene file in TOML") from None
     except (tomllib.TOMLDecodeError, ValueError, RecursionError) as error:
         raise InputError(f"{name_or_path}: is not TOML: {error}; correct it there") from None
-    heap = keys.get("heap")
-    if isinstance(heap, dict) and isinstance(heap.get("path"), str):
-        heap["path"] = str(path.parent / heap["path"])
+    for table in (keys.get("heap"), _inside(keys, "chute", "zeta")):
+        if isinstance(table, dict) and isinstance(table.get("path"), str):
+            table["path"] = str(path.parent / table["path"])
+    return keys
+
+
+def _inside(keys: Any, *names: str) -> Any:
+    """What stands at these names, one in another, or None."""
+    for name in names:
+        keys = keys.get(name) if isinstance(keys, dict) else None
     return keys
 
 

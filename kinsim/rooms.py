@@ -14,9 +14,10 @@ from .kinetic.project import PROJECTIONS
 from .kinetic.velocity import Velocity
 from .method import Kinetic, Macroscopic
 from .model.boundary import EXPLAINED
-from .model.chute import ConstantSlope
+from .model.chute import ConstantSlope, SmoothChute
 from .model.friction import Friction
 from .model.heap import Heap
+from .model.slope import Slope
 
 
 class Room(NamedTuple):
@@ -34,7 +35,8 @@ def rooms() -> list[Room]:
         "4": Held, "4, order 2": HeldSloped, "4, statics reflect": Reflecting,
     }  # fmt: skip
     return [
-        *_by_kind("chute.kind", ConstantSlope),
+        *_by_kind("chute.kind", ConstantSlope, SmoothChute),
+        *_by_kind("chute.zeta.kind", *_variants(Slope)),
         *_by_kind("friction.kind", *_variants(Friction)),
         *_by_kind("heap.kind", *_variants(Heap)),
         *(Room("boundary", name, line) for name, line in EXPLAINED.items()),

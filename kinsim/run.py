@@ -20,13 +20,14 @@ from .clock import Clock, Replay
 from .method import Kinetic, Macroscopic
 from .scene import Scene
 from .store import write_netcdf
-from .watch.ledger import COLUMNS, DENSITY_COLUMNS
+from .watch.ledger import EVERY_COLUMN
 
 if TYPE_CHECKING:
     import xarray
 
 VerdictKind = Literal[
-    "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "too-many-steps", "refused", "interrupted"
+    "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "lifted-off", "too-many-steps", "refused",
+    "interrupted",
 ]  # fmt: skip
 
 ENDED: tuple[VerdictKind, ...] = ("finished", "at-rest")
@@ -38,8 +39,8 @@ class Verdict:
     """How a run ended; `str` says it in human words.
 
     Attributes:
-        kind: "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "too-many-steps", "refused" (a
-            step asks for what cannot be had) or "interrupted".
+        kind: "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "lifted-off", "too-many-steps",
+            "refused" (a step asks for what cannot be had) or "interrupted".
         message: One sentence.
         step: Number of the last step kept.
         cell: The cell at fault, if one is.
@@ -114,9 +115,7 @@ class Run:
         """The books over the saved times; see `kinsim.watch.ledger` for the columns."""
         import xarray
 
-        columns = {
-            name: ("t", column, _attrs((COLUMNS | DENSITY_COLUMNS)[name])) for name, column in self.entries.items()
-        }
+        columns = {name: ("t", column, _attrs(EVERY_COLUMN[name])) for name, column in self.entries.items()}
         return xarray.Dataset(columns, coords={"t": ("t", self.t, _attrs("time"))})
 
     @property

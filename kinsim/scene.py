@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -10,12 +11,18 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from .errors import InputError
-from .model.boundary import Boundary
+from .local import Local
+from .model.boundary import Boundary, streams
 from .model.cells import TINY, Cells
-from .model.chute import Chute
+from .model.chute import Chute, ConstantSlope
 from .model.friction import Friction, Frictionless
+from .model.ground import Flat, Ground, Smooth
 from .model.heap import Heap
+from .model.slope import check
 from .value import Number, value
+
+MEET = 1e-6
+"""Slopes at the ends of a periodic domain may differ by so much, in radians."""
 
 
 @value
@@ -27,9 +34,9 @@ class Scene:
     Attributes:
         cells: The cells of the x-axis.
         heap: Initial height and velocity.
-        chute: The ground; sin zeta pulls along it.
+        chute: The ground, a constant slope (1) or a smooth one (13); sin zeta pulls along it.
         friction: Holds the mass back by at most R.
-        boundary: "open", "wall" or "periodic", or a pair (left, right) of the first two.
+        boundary: "open", "wall" or "periodic", or a pair (left, right) of "open", "wall" and `Inflow`.
         epsilon: Height over length of the mass, > 0.
         k: Earth pressure coefficient, > 0.
         title: A line for people.
@@ -37,7 +44,7 @@ class Scene:
 
     cells: Cells
     heap: Heap
-    chute: Chute = Chute()
+    chute: Chute = ConstantSlope()
     friction: Friction = Frictionless()
     boundary: Boundary = "open"
     epsilon: Annotated[Number, Field(gt=0)] = 1.0
@@ -45,8 +52,17 @@ class Scene:
     title: str = ""
 
     def __post_init__(self) -> None:
-        if not TINY <= self.beta < math.inf:
-            raise InputError(f"beta = epsilon k cos zeta = {self.beta:g} is out of range; change epsilon or k")
+        if not isinstance(self.chute, ConstantSlope):
+            check(self.chute.zeta, np.concatenate([self.cells.faces, self.cells.x]))
+            first, last = self.chute.zeta(self.cells.faces[[0, -1]])[0]
+            if self.boundary == "periodic" and abs(first - last) > MEET:
+                raise InputError(
+                    f"chute: zeta is {first:.6g} at the left end and {last:.6g} at the right one, which meet in a "
+                    "periodic domain; give a periodic zeta, or another boundary"
+                )
+        least, most = float(np.min(self.beta)), float(np.max(self.beta))
+        if not TINY <= least <= most < math.inf:
+            raise InputError(f"beta = epsilon k cos zeta = {least:g} is out of range; change epsilon or k")
         self.initial()
 
     @property
@@ -54,27 +70,43 @@ class Scene:
         """Cell centres, shape (nx,)."""
         return self.cells.x
 
-    @property
-    def beta(self) -> float:
-        """beta = epsilon k cos zeta of (1)."""
-        return self.epsilon * self.k * self.chute.cos
+    @cached_property
+    def ground(self) -> Ground:
+        """What chute and friction are to a scheme."""
+        scale, law, dx = self.epsilon * self.k, self.friction, self.cells.dx
+        if isinstance(self.chute, ConstantSlope):
+            return Flat(self.chute.sin, float(law.resistance(self.chute)), scale * self.chute.cos, dx)
+        return Smooth.of(self.chute, law, scale, self.cells, self.boundary)
 
     @property
-    def resistance(self) -> float:
-        """R of Definition 1; the force of friction lies in [-R, R]."""
-        return self.friction.resistance(self.chute)
+    def beta(self) -> Local:
+        """beta = epsilon k cos zeta of (1), (13); shape (nx,) on a smooth chute."""
+        return self.ground.beta
+
+    @property
+    def pull(self) -> Local:
+        """sin zeta; shape (nx,) on a smooth chute."""
+        return self.ground.pull
+
+    @property
+    def resistance(self) -> Local:
+        """R of Definition 1 of a mass at rest; the force of friction lies in [-R, R]; shape (nx,) on a smooth chute."""
+        return self.ground.hold
 
     @property
     def forced(self) -> bool:
         """Whether anything pulls at the mass or holds it back."""
-        return self.chute.sin != 0.0 or self.resistance != 0.0
+        return bool(np.any(self.pull) or np.any(self.resistance))
 
     @property
     def fastest(self) -> float:
-        """The fastest particle at the start, max(|u| + c), c = sqrt(2 beta h)."""
+        """The fastest particle at the start, max(|u| + c), c = sqrt(2 beta h), streams at the ends included."""
         h, q = self.initial()
         u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
-        return float(np.max(np.abs(u) + np.sqrt(2.0 * self.beta * h)))
+        own = float(np.max(np.abs(u) + np.sqrt(2.0 * self.beta * h)))
+        widest = float(np.max(self.beta))
+        coming = [abs(end.u) + math.sqrt(2.0 * widest * end.h) for end in streams(self.boundary) if end.h > 0.0]
+        return max([own, *coming])
 
     @np.errstate(over="ignore", invalid="ignore")
     def initial(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -22,7 +22,10 @@ from .kinetic.velocity import Uniform
 from .kinetic.wing import Density
 from .memory import require, require_history
 from .method import Kinetic, Macroscopic
+from .model.chute import SmoothChute
+from .model.ground import Flat
 from .model.heap import Profile, Table
+from .model.slope_table import SlopeTable
 from .run import Run, Verdict, VerdictKind, description
 from .scene import Scene
 from .sleep import Awake
@@ -128,7 +131,7 @@ def find_bound(scene: Scene, method: Kinetic, clock: AnyClock, force: bool = Fal
         verdict = None
     if verdict is not None and verdict.kind == "non-finite":  # forced beyond (28): what blows up asks for any window
         return 10.0 * twin.first_reach or 1.0
-    largest = twin.reached + max(twin.dts, default=0.0) * (abs(scene.chute.sin) + scene.resistance)
+    largest = twin.reached + max(twin.dts, default=0.0) * float(np.max(np.abs(scene.pull) + scene.resistance))
     return 1.05 * largest if 0.0 < largest < math.inf else 1.0
 
 
@@ -173,6 +176,8 @@ class Loop:
                     "dumps and causes need a density on a velocity grid: take Kinetic with Uniform or Window"
                 )
             return
+        if causes and not isinstance(self.scene.ground, Flat):
+            raise InputError("the moment ledger is one of a constant slope; leave out causes on a smooth chute")
         if self.stepper.limit < 1.0 and causes:
             raise InputError(
                 "the moment ledger follows one stage; order 2 takes two: take order 1, or leave out causes"
@@ -248,11 +253,14 @@ class Loop:
             self.still = self.still + 1 if look.q_max <= stepper.rest(look.h_max) else 0
             settled = clock.stop_at_rest and self.still > 0 and self._settled(h1, q1, look.h_max)
             last = self._accept(h1, q1, dt, after)
+            lifted = self.ledger.lift.note(self.t, self.h, self.q)
             self.ledger.note(look, courant, books, awake.at.density if awake.at else None)
             self.fastest = look.fastest
             if last or self.step % self.save_every == 0:
                 self.ledger.save(self.h, self.q)
                 self._save()
+            if lifted:
+                return self.verdict("lifted-off", "the mass left the ground, and the chute is strict; stopped")
             if settled and not last:
                 return self.verdict("at-rest", "came to rest")
             self.keeper.after_step(self.kept)
@@ -279,6 +287,8 @@ class Loop:
         if ledger.least_density < 0:
             why = ", as balanced faces allow" if self.stepper.scheme.uses_balanced else ""
             notes.append(f"f fell to {ledger.least_density:.3g} somewhere{why}")
+        if ledger.lift.words:
+            notes.append(ledger.lift.words)
         if self.keeper.trouble:
             notes.append(self.keeper.trouble)
         return Verdict(kind, "; ".join(notes), self.step, cell)
@@ -417,7 +427,9 @@ class Loop:
 
 
 def _on_its_own(scene: Scene) -> Scene:
-    """The scene, with what it reads from a file as values of its own."""
+    """The scene, with what it reads from files as values of its own."""
+    if isinstance(scene.chute, SmoothChute) and isinstance(scene.chute.zeta, SlopeTable):
+        scene = replace(scene, chute=replace(scene.chute, zeta=scene.chute.zeta.points()))
     if not isinstance(scene.heap, Table):
         return scene
     h, u = scene.heap(scene.x)
@@ -426,7 +438,7 @@ def _on_its_own(scene: Scene) -> Scene:
 
 def _falling(scene: Scene, clock: AnyClock) -> float:
     """The speed that keeps a grain which starts to slide from passing more cells than the Courant number in a step."""
-    drive = max(abs(scene.chute.sin) - scene.resistance, 0.0)
+    drive = max(float(np.max(np.abs(scene.pull) - scene.resistance)), 0.0)
     return math.sqrt(0.5 * clock.number * scene.cells.dx * drive) if isinstance(clock, Courant) else 0.0
 
 

@@ -18,7 +18,7 @@ from .kernel import kernel
 from .kinetic.velocity import Uniform, Window
 from .method import Kinetic, Macroscopic
 from .model.boundary import Boundary, ends
-from .model.chute import Chute
+from .model.ground import Ground
 from .scene import Scene
 from .stepper import Books, Stepper, make_stepper
 
@@ -43,9 +43,7 @@ class Part:
 
     cells: Stretch
     boundary: Boundary
-    chute: Chute
-    resistance: float
-    beta: float
+    ground: Ground
     forced: bool
 
     @classmethod
@@ -54,7 +52,7 @@ class Part:
         left, right = ends(scene.boundary)
         boundary = (left if low == 0 else "open", right if high == scene.cells.count else "open")
         cells = Stretch(high - low, scene.cells.dx)
-        return cls(cells, boundary, scene.chute, scene.resistance, scene.beta, scene.forced)  # type: ignore[arg-type]
+        return cls(cells, boundary, scene.ground.part(low, high), scene.forced)  # type: ignore[arg-type]
 
 
 class Awake:

@@ -8,12 +8,13 @@ from typing import NamedTuple
 import numpy as np
 
 from .balance.scheme4 import Held, HeldSloped, Reflecting
-from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face
+from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face, flat
 from .balance.settle import settle, stand_held
 from .balance.slide import TILE, slide
 from .balance.stages import TOP, Array, Stages, reach
 from .balance.update import mean_of_stages, update
 from .balance.wing import Wing
+from .errors import InputError
 from .kinetic.choice import make_density, may_forget
 from .kinetic.fitted import FittedMeasure
 from .kinetic.project import PROJECTIONS, FluxDifference, Projection
@@ -22,7 +23,8 @@ from .kinetic.wing import Density
 from .macroscopic.sweep import stand
 from .macroscopic.wing import ClosedForm
 from .method import Kinetic, Macroscopic
-from .model.boundary import shown
+from .model.boundary import shown, streams
+from .model.ground import Flat
 from .scene import Scene
 
 
@@ -49,17 +51,18 @@ class Stepper:
 
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
         self.scene = scene
-        self._dx, self._beta, self._periodic = scene.cells.dx, scene.beta, scene.boundary == "periodic"
+        self._dx, self._periodic = scene.cells.dx, scene.boundary == "periodic"
         self.scheme = make_scheme(method, scene)
+        self._beta = scene.ground.shown(self.scheme.sloped)
         self.now = Stages.empty(scene.cells.count, self.scheme.sloped)
         self.density: Density | None = None
         self._fastest = 0.0
         self.projection: Projection = FluxDifference()
         self.wing: Wing
         if isinstance(method, Macroscopic):
-            self.wing = ClosedForm(scene)
+            self.wing = ClosedForm(scene, self.scheme.sloped)
         elif isinstance(method.velocity, Fitted):
-            self.wing = FittedMeasure(scene, method.velocity.count)
+            self.wing = FittedMeasure(scene, self.scheme.sloped, method.velocity.count)
         else:
             self.projection = PROJECTIONS[method.projection]
             self.wing = self.density = make_density(scene, method, self.scheme)
@@ -107,7 +110,7 @@ class Sliding(Stepper):
 
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
         super().__init__(scene, method)
-        self._ground = (scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx)
+        self._ground = flat(scene).numbers
 
     def advance(self, dt: float) -> Books:
         """From where `begin` stood to U^{n+1}, (24)."""
@@ -141,7 +144,7 @@ class Swept(Sliding):
     def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
         """Stand at U^n, and sum up what leaves the cells, (24)."""
         now = self.now
-        self._fastest = stand(h, q, self._beta, *self._ends, now.h, now.u, now.q, *self._room, now.F1, now.F2)
+        self._fastest = stand(h, q, self._ground[2], *self._ends, now.h, now.u, now.q, *self._room, now.F1, now.F2)
         return self._fastest
 
     def _fluxes(self) -> None:
@@ -159,7 +162,7 @@ class Settling(Sliding):
         faces = (now.e, now.theta, now.still)
         seen = (now.low, now.high)
         self._stand = (*self._ground, *ends, now.h, now.u, now.q, *faces, *states, now.held, *seen, TOP)
-        self._before = (now.h, now.q, to.h_left, *faces, *seen, now.F1, now.F2, *self._ground, *ends[2:])
+        self._before = (now.h, now.q, to.h_left, to.h_right, *faces, *seen, now.F1, now.F2, *self._ground, *ends[2:])
 
     def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
         """Stand at U^n, and judge the faces."""
@@ -218,6 +221,8 @@ class Heun(Stepper):
 
 def make_scheme(method: Kinetic | Macroscopic, scene: Scene) -> Scheme:
     """The scheme of a method; without any force no cell is slow, so that scheme 3 is scheme 1."""
+    if method.scheme != 4 and not isinstance(scene.ground, Flat):
+        raise InputError(f"scheme {method.scheme} is made for a constant slope; on a smooth chute take scheme 4")
     if method.scheme == 4:
         if method.order == 2:
             return HeldSloped(scene, method.limiter)
@@ -239,6 +244,8 @@ def make_stepper(scene: Scene, method: Kinetic | Macroscopic) -> Stepper:
     if method.order == 2:
         return Heun(scene, method)
     scheme = make_scheme(method, scene)
+    if not isinstance(scene.ground, Flat) or streams(scene.boundary):
+        return Stepper(scene, method)
     gridless = isinstance(method, Macroscopic) or isinstance(method.velocity, Fitted)
     if type(scheme) is Held and gridless:
         return Settling(scene, method)

@@ -54,6 +54,8 @@ CASES = {
     "entropic, re-summed": (Kinetic(1, Uniform(32), "entropic", projection="re-summed"), Fixed(0.01, 30), {}),
     "shift-exact": (Kinetic(1, Window(0.2), force="shift-exact"), Fixed(0.01, 60), {"dumps": [Dump(every=9)]}),
     "reflecting": (Kinetic(velocity=Uniform(16), statics="reflect"), Fixed(0.01, 60), {}),
+    "jump": (Kinetic(velocity=Uniform(16), statics="reflect"), Courant(0.9, 8.0), {"scene": "jump"}),
+    "crest, second": (Macroscopic(order=2), Courant(0.4, 2.0), {"scene": "crest"}),
 }
 
 
@@ -71,6 +73,9 @@ def same(one: Run, other: Run) -> None:
 def test_it_goes_on_bit_for_bit(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """From every 13th step of each kind of run, taken up in a folder of its own."""
     method, clock, asked = CASES[name]
+    asked = dict(asked)
+    built_in = asked.pop("scene", None)
+    scene = replace(load_scene(built_in)[0], cells=Cells(0, 12, 60)) if built_in else SILO
     taken: list[Path] = []
 
     def write(path: Path, *rest: object) -> None:
@@ -79,7 +84,7 @@ def test_it_goes_on_bit_for_bit(name: str, tmp_path: Path, monkeypatch: pytest.M
         shutil.copy(path, taken[-1])
 
     monkeypatch.setattr(kinsim.checkpoint, "write_checkpoint", write)
-    whole = simulate(SILO, method, clock, 10, checkpoint=Checkpoint(str(tmp_path / "c"), every=0), **asked)
+    whole = simulate(scene, method, clock, 10, checkpoint=Checkpoint(str(tmp_path / "c"), every=0), **asked)
     monkeypatch.undo()
     assert len(taken) == whole.steps
     for path in taken[::13]:

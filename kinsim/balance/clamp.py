@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel, kernel_part
+from ..local import Local, at, varies
 from .impulse import DRY
 
 Array = NDArray[np.float64]
@@ -73,7 +74,7 @@ def uphill_pull(h: float, above: float, below: float, net: float, reach: float, 
 @kernel
 def clamped(
     h: Array, h1: Array, qhat: Array, pulled: Array, e: Array, theta: Array, still: Flags,
-    s: float, R: float, beta: float, dx: float, dt: float, wall_left: bool, wall_right: bool, J: Array,
+    s: Local, R: Local, beta: Local, dx: float, dt: float, wall_left: bool, wall_right: bool, J: Array,
 ) -> None:  # fmt: skip
     """J = clamp(-qhat; dt (s - R) pulled, dt (s + R) pulled): friction stops, and never reverses.
 
@@ -82,21 +83,22 @@ def clamped(
     it as a heap of the same slope would.
     """
     last = J.size - 1
-    driven = s - R > 0.0 or s + R < 0.0
+    driven = varies(s) or at(s, 0) - at(R, 0) > 0.0 or at(s, 0) + at(R, 0) < 0.0
     for i in range(J.size if driven else 0):
         before, here, after = h[i], h[i + 1], h[i + 2]
         if wall_left and i == 0:
             before = max(here - e[0], 0.0)
         if wall_right and i == last:
             after = max(here + e[last + 1], 0.0)
-        low, high = s - R, s + R
+        pull, friction, by = at(s, i), at(R, i), at(beta, i)
+        low, high = pull - friction, pull + friction
         held = min(theta[i], theta[i + 1])
         if low > 0.0:
-            low = uphill_pull(here, before, after, low, low * dx / beta, held)
+            low = uphill_pull(here, before, after, low, low * dx / by, held)
         elif high < 0.0:
-            high = -uphill_pull(here, after, before, -high, -high * dx / beta, held)
+            high = -uphill_pull(here, after, before, -high, -high * dx / by, held)
         J[i] = min(max(-qhat[i], (dt * low) * pulled[i]), (dt * high) * pulled[i])
-    low, high = dt * (s - R), dt * (s + R)
+    low, high = dt * (at(s, 0) - at(R, 0)), dt * (at(s, 0) + at(R, 0))
     for i in range(0 if driven else J.size):
         J[i] = min(max(-qhat[i], low * pulled[i]), high * pulled[i])
     for i in range(J.size):

@@ -28,6 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel
+from ..local import Local, Sides, at, left, right
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -38,22 +39,25 @@ SAME = 8e-15
 
 @kernel
 def judge_faces(
-    h: Array, u: Array, s: float, R: float, beta: float, dx: float, wall_left: bool, wall_right: bool,
-    e: Array, theta: Array, still: Flags,
+    h: Array, u: Array, s: Local, R: Local, beta: Local, tilt: Array | None, dx: float,
+    wall_left: bool, wall_right: bool, e: Array, theta: Array, still: Flags,
 ) -> None:  # fmt: skip
     """Write e and theta of every face, and which faces are still, shape (nx + 1,); h, u are ghosted.
 
     A still face is one between resting cells whose jump friction balances. A wall is judged as the face next to it.
     """
-    low, high = (s - R) * dx / beta, (s + R) * dx / beta
-    slowing = max(R, (abs(s) - R) * (4.0 / math.pi)) * dx
     last = e.size - 1
     for i in range(e.size):
         a, b = h[i], h[i + 1]
+        pull, hold, by = at(s, i), at(R, i), at(beta, i)
+        low, high = (pull - hold) * dx / by, (pull + hold) * dx / by
+        if tilt is not None:
+            low, high = low - tilt[i] * (a + b), high - tilt[i] * (a + b)
         e[i] = min(max(b - a, low), high)
         w = (a * abs(u[i]) + b * abs(u[i + 1])) / (a + b) if a + b > 0.0 else 0.0
-        share = max(1.0 - w * (w + math.sqrt(2.0 * beta * max(min(a, b), 0.0))) / slowing, 0.0)
-        theta[i] = share if R > 0.0 else 0.0
+        slowing = max(hold, (abs(pull) - hold) * (4.0 / math.pi)) * dx
+        share = max(1.0 - w * (w + math.sqrt(2.0 * by * max(min(a, b), 0.0))) / slowing, 0.0)
+        theta[i] = share if hold > 0.0 else 0.0
     for i in range(e.size):
         a, b = h[i], h[i + 1]
         rest = (theta[i] == 1.0) & (u[i] == 0.0) & (u[i + 1] == 0.0)
@@ -67,6 +71,7 @@ def judge_faces(
 @kernel
 def hold_back(
     h_plus: Array, u_plus: Array, h_minus: Array, u_minus: Array, e: Array, theta: Array, still: Flags,
+    uneven: tuple[Array, Array] | None,
     wall_left: bool, wall_right: bool,
     h_left: Array, u_left: Array, h_right: Array, u_right: Array, held: Flags,
 ) -> None:  # fmt: skip
@@ -78,8 +83,15 @@ def hold_back(
     last = e.size - 1
     for i in range(e.size):
         a, b = h_plus[i], h_minus[i + 1]
-        h_left[i] = min(a, b) if still[i] else max(a - theta[i] * max(-e[i], 0.0), 0.0)
-        h_right[i] = min(a, b) if still[i] else max(b - theta[i] * max(e[i], 0.0), 0.0)
+        above, below = -e[i], e[i]
+        if uneven is not None:
+            above, below = above - uneven[0][i] * (a + e[i]), below - uneven[1][i] * (b - e[i])
+        h_left[i] = max(a - theta[i] * max(above, 0.0), 0.0)
+        h_right[i] = max(b - theta[i] * max(below, 0.0), 0.0)
+        if still[i]:
+            h_left[i] = h_right[i] = min(a, b)
+            if uneven is not None:
+                h_left[i], h_right[i] = min(a, (1.0 + uneven[0][i]) * b), min(b, (1.0 + uneven[1][i]) * a)
     if wall_left:
         h_left[0] = h_right[0] = max(h_minus[1] - theta[0] * max(e[0], 0.0), 0.0)
     if wall_right:
@@ -91,8 +103,10 @@ def hold_back(
 
 
 @kernel
-def rest_flux(h_left: Array, still: Flags, beta: float, F1: Array, F2: Array) -> None:
+def rest_flux(h_left: Array, h_right: Array, still: Flags, beta: Sides, F1: Array, F2: Array) -> None:
     """A still face passes no mass, and the pressure of its height: exactly, whatever nodes the density has."""
     for i in range(F1.size):
         F1[i] = 0.0 if still[i] else F1[i]
-        F2[i] = 0.5 * beta * h_left[i] * h_left[i] if still[i] else F2[i]
+        one = at(left(beta), i) * h_left[i] * h_left[i]
+        other = at(right(beta), i) * h_right[i] * h_right[i]
+        F2[i] = 0.25 * one + 0.25 * other if still[i] else F2[i]

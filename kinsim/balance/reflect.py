@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel
+from ..local import Local, at
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -23,15 +24,19 @@ ROUNDING = 1e-13
 
 @kernel
 def find_static(
-    h: Array, u: Array, s: float, R: float, beta: float, dx: float, dt: float, wall_left: bool, wall_right: bool,
+    h: Array, u: Array, s: Local, R: Local, beta: Local, tilt: Array | None, dx: float, dt: float,
+    wall_left: bool, wall_right: bool,
     leftover: Array, static: Flags,
 ) -> None:  # fmt: skip
     """Write L_+ and which faces are static, shape (nx + 1,); h, u are ghosted. A wall is as the face next to it."""
     for i in range(static.size):
-        spare = R - abs(s - beta * (h[i + 1] - h[i]) / dx)
+        hold, slope = at(R, i), at(beta, i) * (h[i + 1] - h[i]) / dx
+        if tilt is not None:
+            slope += at(beta, i) * tilt[i] * (h[i] + h[i + 1]) / dx
+        spare = hold - abs(at(s, i) - slope)
         leftover[i] = max(spare, 0.0)
         fastest = max(abs(u[i]), abs(u[i + 1]))
-        static[i] = R > 0.0 and spare >= -ROUNDING and fastest <= dt * leftover[i]
+        static[i] = hold > 0.0 and spare >= -ROUNDING and fastest <= dt * leftover[i]
     last = static.size - 1
     if wall_left and last > 1:
         leftover[0], static[0] = leftover[1], static[1]
@@ -56,7 +61,7 @@ def reflected(P: Array, N: Array, static: Flags, F1: Array, F2: Array, B2: Array
 
 
 @kernel
-def stopped(h1: Array, qhat: Array, leftover: Array, static: Flags, s: float, R: float, dt: float, J: Array) -> None:
+def stopped(h1: Array, qhat: Array, leftover: Array, static: Flags, s: Local, R: Local, dt: float, J: Array) -> None:
     """J of a pull and a soft threshold: friction takes from |qhat + dt w s h| what it can, and never reverses.
 
     w is the share of a cell's faces that are not static; a static face counts with half of the friction left there.
@@ -67,7 +72,7 @@ def stopped(h1: Array, qhat: Array, leftover: Array, static: Flags, s: float, R:
             if static[face]:
                 w -= 0.5
                 spare += 0.5 * leftover[face]
-        pull = (dt * (w * s)) * h1[i]
-        most = (dt * (w * R + spare)) * h1[i]
+        pull = (dt * (w * at(s, i))) * h1[i]
+        most = (dt * (w * at(R, i) + spare)) * h1[i]
         q = qhat[i] + pull
         J[i] = -qhat[i] if abs(q) <= most else pull - math.copysign(most, q)

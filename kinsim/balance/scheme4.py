@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from ..model.boundary import ends, extend_shown
+from ..model.ground import OfCells, OfFaces
 from ..scene import Scene
 from .clamp import below_nothing, clamped, clip_velocity
 from .hold import hold_back, judge_faces, rest_flux
@@ -34,27 +35,29 @@ class Held:
 
     def __init__(self, scene: Scene) -> None:
         self._boundary = scene.boundary
-        self._ground = (scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx)
+        self._ground = scene.ground
+        self._faces: OfFaces = scene.ground.faces
+        self._beta, self._uneven = scene.ground.shown(self.sloped).faces, scene.ground.uneven(self.sloped)
         left, right = ends(scene.boundary)
         self._walls = (left == "wall", right == "wall")
 
     def prepare(self, now: Stages, fastest: float) -> None:
-        judge_faces(now.h, now.u, *self._ground, *self._walls, now.e, now.theta, now.still)
+        judge_faces(now.h, now.u, *self._faces, *self._walls, now.e, now.theta, now.still)
 
     def fluxes(self, now: Stages, wing: Wing, dt: float) -> Walls:
         to = now.balanced
         states = (to.h_left, to.u_left, to.h_right, to.u_right)
-        hold_back(*now.plus, *now.minus, now.e, now.theta, now.still, *self._walls, *states, now.held)
+        hold_back(*now.plus, *now.minus, now.e, now.theta, now.still, self._uneven, *self._walls, *states, now.held)
         wing.support(now)
         wing.held_flux(now)
-        rest_flux(to.h_left, now.still, self._ground[2], now.F1, now.F2)
+        rest_flux(to.h_left, to.h_right, now.still, self._beta, now.F1, now.F2)
         return Walls.of(now.F1, now.F2)
 
     def impulse(self, now: Stages, pulled: Array, dt: float) -> float:
         mended = below_nothing(now.h1)
         clip_velocity(now.low, now.high, now.h1, now.qhat)
-        faces = (now.e, now.theta, now.still)
-        clamped(now.h, now.h1, now.qhat, pulled, *faces, *self._ground, dt, *self._walls, now.J)
+        ground: OfCells = self._ground.cells(now.u[1:-1], dt)
+        clamped(now.h, now.h1, now.qhat, pulled, now.e, now.theta, now.still, *ground, dt, *self._walls, now.J)
         return mended
 
 
@@ -69,7 +72,7 @@ class HeldSloped(Held):
 
     def prepare(self, now: Stages, fastest: float) -> None:
         super().prepare(now, fastest)
-        beta = self._ground[2]
+        beta = self._faces[2]
         reconstruct(now.h, now.u, now.theta, self._steepest, beta, fastest, *now.minus, *now.plus)
         extend_shown(self._boundary, now.minus, now.plus)
 
@@ -87,14 +90,14 @@ class Reflecting(Held):
         pass
 
     def fluxes(self, now: Stages, wing: Wing, dt: float) -> Walls:
-        find_static(now.h, now.u, *self._ground, dt, *self._walls, now.leftover, now.static)
+        find_static(now.h, now.u, *self._faces, dt, *self._walls, now.leftover, now.static)
         wing.support(now)
         half = wing.half_moments(now)
         reflected(half[:2], half[2:], now.static, now.F1, now.F2, now.B2)
         return Walls(now.F1[:-1], now.B2[:-1], now.F1[1:], now.F2[1:])
 
     def impulse(self, now: Stages, pulled: Array, dt: float) -> float:
-        s, R, _, _ = self._ground
+        s, R, _, _ = self._ground.cells(now.u[1:-1], dt)
         mended = below_nothing(now.h1)
         clip_velocity(now.low, now.high, now.h1, now.qhat)
         stopped(pulled, now.qhat, now.leftover, now.static, s, R, dt, now.J)

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..kernel import kernel
 from ..model.boundary import extend_flag
+from ..model.ground import Flat
 from ..scene import Scene
 from .impulse import find_slow, keep_dry, sliding, stopping
 from .interface import Array, balanced
@@ -45,7 +46,7 @@ class Scheme1:
 
     def __init__(self, scene: Scene) -> None:
         self._boundary = scene.boundary
-        self._ground = (scene.chute.sin, scene.resistance, scene.beta, scene.cells.dx)
+        self._ground = flat(scene).numbers
 
     def prepare(self, now: Stages, fastest: float) -> None:
         pass
@@ -101,6 +102,12 @@ class Scheme3Face(Scheme2):
     def choose(self, now: Stages) -> None:
         np.logical_and(now.slow[:-2], now.slow[1:-1], out=now.at_left)
         np.logical_and(now.slow[1:-1], now.slow[2:], out=now.at_right)
+
+
+def flat(scene: Scene) -> Flat:
+    """The ground of schemes that are made for a constant slope."""
+    assert isinstance(scene.ground, Flat)
+    return scene.ground
 
 
 @kernel

@@ -34,8 +34,8 @@ def stand_held(
     split(h0, q0, h, u)
     for i in range(q.size):
         q[i] = q0[i]
-    judge_faces(h, u, s, R, beta, dx, wall_left, wall_right, e, theta, still)
-    hold_back(h, u, h, u, e, theta, still, wall_left, wall_right, h_left, u_left, h_right, u_right, held)
+    judge_faces(h, u, s, R, beta, None, dx, wall_left, wall_right, e, theta, still)
+    hold_back(h, u, h, u, e, theta, still, None, wall_left, wall_right, h_left, u_left, h_right, u_right, held)
     support(h, u, beta, low, high)
     room[:] = 0.0
     quicken(h, u, beta, room)
@@ -44,7 +44,7 @@ def stand_held(
 
 @kernel
 def settle(
-    h: Array, q: Array, h_left: Array, e: Array, theta: Array, still: Flags, low: Array, high: Array,
+    h: Array, q: Array, h_left: Array, h_right: Array, e: Array, theta: Array, still: Flags, low: Array, high: Array,
     F1: Array, F2: Array, s: float, R: float, beta: float, dx: float, wall_left: bool, wall_right: bool, dt: float,
     h1: Array, qhat: Array, J: Array, q1: Array,
 ) -> float:  # fmt: skip
@@ -52,7 +52,7 @@ def settle(
 
     Returns the mass that heights below 0 are mended with, per dx.
     """
-    rest_flux(h_left, still, beta, F1, F2)
+    rest_flux(h_left, h_right, still, beta, F1, F2)
     move(h, q, F1[:-1], F2[:-1], F1[1:], F2[1:], dt / dx, h1, qhat)
     mended = below_nothing(h1)
     clip_velocity(low, high, h1, qhat)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel_inner, kernel_part
+from ..local import Local, Sides, at, left, right
 
 Array = NDArray[np.float64]
 
@@ -36,22 +37,22 @@ def both_sides(h: float, u: float, beta: float, m1: float, m2: float) -> tuple[f
 
 
 @kernel_inner
-def faces_of_cells(h: Array, u: Array, beta: float, m1: Array, m2: Array, F1: Array, F2: Array) -> None:
+def faces_of_cells(h: Array, u: Array, beta: Local, m1: Array, m2: Array, F1: Array, F2: Array) -> None:
     """F of (24): xi > 0 from the cell left of a face and xi < 0 from the one right of it; h, u, m are ghosted."""
     for i in range(F1.size):
-        p1, p2 = ahead(h[i], u[i], beta, m1[i], m2[i])
-        n1, n2 = ahead(h[i + 1], -u[i + 1], beta, m1[i + 1], m2[i + 1])
+        p1, p2 = ahead(h[i], u[i], at(beta, i), m1[i], m2[i])
+        n1, n2 = ahead(h[i + 1], -u[i + 1], at(beta, i + 1), m1[i + 1], m2[i + 1])
         F1[i] = p1 - n1
         F2[i] = p2 + n2
 
 
 @kernel_inner
 def faces_of_states(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, m: Array, F1: Array, F2: Array
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, m: Array, F1: Array, F2: Array
 ) -> None:
     """The same for faces with states of their own; the rows of `m` are the moments of the left and right states."""
     for i in range(F1.size):
-        p1, p2 = ahead(h_left[i], u_left[i], beta, m[0, i], m[1, i])
-        n1, n2 = ahead(h_right[i], -u_right[i], beta, m[2, i], m[3, i])
+        p1, p2 = ahead(h_left[i], u_left[i], at(left(beta), i), m[0, i], m[1, i])
+        n1, n2 = ahead(h_right[i], -u_right[i], at(right(beta), i), m[2, i], m[3, i])
         F1[i] = p1 - n1
         F2[i] = p2 + n2

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel
+from ..local import Local, at
 
 Array = NDArray[np.float64]
 
@@ -37,7 +38,7 @@ def say(other: float, h: float) -> float:
 
 @kernel
 def reconstruct(
-    h: Array, u: Array, theta: Array, steepest: float, beta: float, fastest: float,
+    h: Array, u: Array, theta: Array, steepest: float, beta: Local, fastest: float,
     h_minus: Array, u_minus: Array, h_plus: Array, u_plus: Array,
 ) -> None:  # fmt: skip
     """Write what each inner cell shows to its left wall (minus) and to its right wall (plus); all arrays are ghosted.
@@ -55,7 +56,7 @@ def reconstruct(
         v, w = u[i], u[i]
         if h[i] > 0.0:
             v, w = u[i] - high / h[i] * pull, u[i] + low / h[i] * pull
-        if max(abs(v) + math.sqrt(2.0 * beta * low), abs(w) + math.sqrt(2.0 * beta * high)) > fastest:
+        if max(abs(v) + math.sqrt(2.0 * at(beta, i - 1) * low), abs(w) + math.sqrt(2.0 * at(beta, i) * high)) > fastest:
             low = high = h[i]
             v = w = u[i]
         h_minus[i], u_minus[i], h_plus[i], u_plus[i] = low, v, high, w

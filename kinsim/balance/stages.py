@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel, kernel_inner, kernel_part
+from ..local import Local, at
 from ..model.boundary import extend
+from ..model.ground import Shown
 from ..scene import Scene
 from .interface import Faces, upwind
 
@@ -102,17 +104,17 @@ def split(h: Array, q: Array, h_ghosted: Array, u_ghosted: Array) -> None:
         u_ghosted[i + 1] = q[i] / h[i] if h[i] > 0.0 else 0.0
 
 
-def reach(now: Stages, beta: float, balanced: bool) -> float:
+def reach(now: Stages, beta: Shown, balanced: bool) -> float:
     """max(|u| + c) over all that the cells show, and with `balanced` over the face states (25)."""
-    shown: float = fastest(*now.plus, beta, balanced, TOP)
-    return shown if now.minus is now.plus else max(shown, fastest(*now.minus, beta, False, TOP))
+    shown: float = fastest(*now.plus, beta.plus, balanced, TOP)
+    return shown if now.minus is now.plus else max(shown, fastest(*now.minus, beta.minus, False, TOP))
 
 
 @kernel
-def support(h: Array, u: Array, beta: float, low: Array, high: Array) -> None:
+def support(h: Array, u: Array, beta: Local, low: Array, high: Array) -> None:
     """The slowest and the fastest particle u -+ c of each cell, inf and -inf where it is dry."""
     for i in range(h.size):
-        c = np.sqrt(2.0 * beta * h[i])
+        c = np.sqrt(2.0 * at(beta, i) * h[i])
         low[i] = u[i] - c if h[i] > 0.0 else np.inf
         high[i] = u[i] + c if h[i] > 0.0 else -np.inf
 
@@ -126,7 +128,7 @@ TOP = np.empty(LANES)
 
 
 @kernel
-def fastest(h: Array, u: Array, beta: float, faces: bool, room: Array) -> float:
+def fastest(h: Array, u: Array, beta: Local, faces: bool, room: Array) -> float:
     """max(|u| + sqrt(2 beta h)) over cells with mass and, with `faces`, over face states (25); h, u are ghosted."""
     room[:] = 0.0
     quicken(h, u, beta, room)
@@ -134,18 +136,18 @@ def fastest(h: Array, u: Array, beta: float, faces: bool, room: Array) -> float:
     if faces:
         for i in range(1, h.size):
             mean = max(0.5 * (h[i - 1] + h[i]), 0.0)
-            top = max(top, max(abs(u[i - 1]), abs(u[i])) + np.sqrt(2.0 * beta * mean))
+            top = max(top, max(abs(u[i - 1]), abs(u[i])) + np.sqrt(2.0 * at(beta, i) * mean))
     return top
 
 
 @kernel_inner
-def quicken(h: Array, u: Array, beta: float, room: Array) -> None:
+def quicken(h: Array, u: Array, beta: Local, room: Array) -> None:
     """Raise the speeds kept side by side in `room` to those of the cells with mass."""
     for begin in range(0, h.size, room.size):
         first, last = np.uint64(begin), np.uint64(min(begin + room.size, h.size))
         for i in range(first, last):
             k = i - first
-            speed = abs(u[i]) + np.sqrt(2.0 * beta * max(h[i], 0.0))
+            speed = abs(u[i]) + np.sqrt(2.0 * at(beta, i) * max(h[i], 0.0))
             room[k] = max(room[k], speed if h[i] > 0.0 else 0.0)
 
 

@@ -46,8 +46,8 @@ class Wing(Protocol):
 class WithoutDensity(ABC):
     """A wing whose half-range moments are functions of (h, u): there is nothing to carry, and nothing to lose."""
 
-    def __init__(self, scene: Scene) -> None:
-        self._beta = scene.beta
+    def __init__(self, scene: Scene, sloped: bool) -> None:
+        self._beta = scene.ground.shown(sloped)
         self._room = np.empty((5, scene.cells.count + 2))
 
     def equilibrium(self, now: Stages) -> float:
@@ -56,10 +56,10 @@ class WithoutDensity(ABC):
 
     def support(self, now: Stages) -> None:
         """u -+ c of what the cells show."""
-        support(*now.plus, self._beta, now.low, now.high)
+        support(*now.plus, self._beta.plus, now.low, now.high)
         if now.plus is not now.minus:
             low, high = np.empty_like(now.low), np.empty_like(now.high)
-            support(*now.minus, self._beta, low, high)
+            support(*now.minus, self._beta.minus, low, high)
             np.minimum(now.low, low, out=now.low)
             np.maximum(now.high, high, out=now.high)
 

@@ -1,7 +1,7 @@
 """Exact solutions to judge the schemes by; each is tested by its own residual.
 
 Each is a frozen value, called with (x, t) to get h, u, with cell averages, and refuses what lies outside its domain.
-`pull` is sin zeta, `resistance` is R = cos zeta tan delta and `beta` is epsilon k cos zeta of (1): `scene.chute.sin`,
+`pull` is sin zeta, `resistance` is R = cos zeta tan delta and `beta` is epsilon k cos zeta of (1): `scene.pull`,
 `scene.resistance` and `scene.beta` of a `kinsim.Scene`.
 """
 
@@ -13,6 +13,7 @@ from .random_pile import coulomb_fill, random_pile
 from .riemann import Riemann
 from .shock import TravellingShock
 from .slide import UniformSlide
+from .stream import SteadyStream
 from .transport import FreeTransport
 from .wedge import SlidingWedge
 
@@ -24,6 +25,7 @@ __all__ = [
     "Riemann",
     "SlidingWedge",
     "StaticPile",
+    "SteadyStream",
     "TravellingShock",
     "UniformSlide",
     "coulomb_fill",

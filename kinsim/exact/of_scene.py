@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from ..model.boundary import streams
+from ..model.ground import Flat
 from ..model.heap import Blocks
 from ..scene import Scene
 from .accelerated import AcceleratedRiemann
@@ -15,14 +17,16 @@ def exact_of(scene: Scene) -> Riemann | AcceleratedRiemann | UniformSlide | None
     It knows no ends, and so only open ones will do. Of a layer that is the same everywhere, between open or periodic
     ends: the slide.
     """
-    heap = scene.heap
+    if not isinstance(scene.ground, Flat) or streams(scene.boundary):
+        return None
+    ground, heap = scene.ground, scene.heap
     h, u = heap(scene.cells.x)
     if h[0] > 0.0 and (h == h[0]).all() and (u == u[0]).all() and scene.boundary in ("open", "periodic"):
-        return UniformSlide(float(u[0]), scene.chute.sin, scene.resistance, float(h[0]))
+        return UniformSlide(float(u[0]), ground.pull, ground.hold, float(h[0]))
     if not isinstance(heap, Blocks) or len(heap.edges) != 1 or scene.boundary != "open":
         return None
-    frame = Riemann(heap.heights[0], 0.0, heap.heights[1], 0.0, beta=scene.beta, x0=heap.edges[0])
+    frame = Riemann(heap.heights[0], 0.0, heap.heights[1], 0.0, beta=ground.beta, x0=heap.edges[0])
     if not scene.forced:
         return frame
-    sliding = AcceleratedRiemann(frame, pull=scene.chute.sin, resistance=scene.resistance)
+    sliding = AcceleratedRiemann(frame, pull=ground.pull, resistance=ground.hold)
     return sliding if sliding.until > 0.0 else None

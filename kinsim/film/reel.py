@@ -13,6 +13,7 @@ from pydantic import Field
 
 from ..balance.stages import Array
 from ..kinetic.velocity import Fitted
+from ..local import Local
 from ..measure.compare import method_name
 from ..memory import require
 from ..method import Kinetic, Macroscopic
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
     import xarray
 
 Rows = NDArray[np.intp]
+
+FILM = 1e-6
+"""Films thinner than this share of the highest cell are drawn at rest."""
 
 MOST_FRAMES = 600
 """A film of more would be too large for a page."""
@@ -108,10 +112,16 @@ def cut(
     return reel if dump is None else replace(reel, density=_dumped(dump, reel))
 
 
-def equilibrium(h: Array, u: Array, beta: float, xi: Array) -> Array:
+def equilibrium(h: Array, u: Array, beta: Local, xi: Array) -> Array:
     """M(h, xi - u) of (3) at the velocities xi of shape (n,), shape (nx, n)."""
+    beta = np.asarray(beta)[..., None]
     square = 2.0 * beta * np.maximum(h, 0.0)[:, None] - (xi - u[:, None]) ** 2
     return np.asarray(np.sqrt(np.maximum(square, 0.0)) / (np.pi * beta))
+
+
+def visible(h: Array, u: Array) -> Array:
+    """u of shape (..., nx), and 0 in films too thin to be seen, whose velocities would fill a picture."""
+    return np.where(h > FILM * h.max(axis=-1, keepdims=True), u, 0.0)
 
 
 def carries(method: Kinetic | Macroscopic) -> bool:

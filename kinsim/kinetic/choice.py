@@ -5,6 +5,7 @@ from __future__ import annotations
 from ..balance.scheme4 import Held
 from ..balance.schemes import Scheme, Scheme1
 from ..method import Kinetic
+from ..model.ground import Flat
 from ..scene import Scene
 from .equilibrium import EQUILIBRIA
 from .force import FORCES
@@ -16,7 +17,7 @@ from .wing import Density
 def make_density(scene: Scene, method: Kinetic, scheme: Scheme) -> Density:
     """The density of a method on a velocity grid, stored only where it has to be."""
     assert not isinstance(method.velocity, Fitted)
-    kind = OnDemand if may_forget(method, scheme) else Density
+    kind = OnDemand if may_forget(method, scheme) and isinstance(scene.ground, Flat) else Density
     return kind(scene, method.velocity, EQUILIBRIA[method.equilibrium], FORCES[method.force], scheme)
 
 

@@ -23,6 +23,7 @@ from ..balance.sides import TINY, both_sides, faces_of_cells, faces_of_states
 from ..balance.stages import Stages
 from ..balance.wing import WithoutDensity
 from ..kernel import kernel, kernel_inner
+from ..local import Local, Sides, at, left, right
 from ..scene import Scene
 
 Array = NDArray[np.float64]
@@ -38,10 +39,10 @@ def gauss_jacobi(count: int) -> tuple[Array, Array]:
 
 
 @kernel_inner
-def small_sides_fitted(h: Array, u: Array, beta: float, s: Array, W: Array, b: Array, m1: Array, m2: Array) -> None:
+def small_sides_fitted(h: Array, u: Array, beta: Local, s: Array, W: Array, b: Array, m1: Array, m2: Array) -> None:
     """S1 and S2 of many states, node by node; all arrays but s and W have one shape, and `b` is room."""
     for i in range(h.size):
-        c = math.sqrt(2.0 * beta * max(h[i], 0.0))
+        c = math.sqrt(2.0 * at(beta, i) * max(h[i], 0.0))
         b[i] = max(c - abs(u[i]), 0.0) / max(c, TINY)
         m1[i] = 0.0
         m2[i] = 0.0
@@ -52,22 +53,22 @@ def small_sides_fitted(h: Array, u: Array, beta: float, s: Array, W: Array, b: A
             m1[i] += root
             m2[i] += root * rest
     for i in range(h.size):
-        c = math.sqrt(2.0 * beta * max(h[i], 0.0))
+        c = math.sqrt(2.0 * at(beta, i) * max(h[i], 0.0))
         scale = 2.0 / math.pi * max(h[i], 0.0) * c * b[i] * b[i] * math.sqrt(b[i])
         m1[i] *= scale
         m2[i] *= scale * c * b[i]
 
 
 @kernel
-def half_moments_of_cells(h: Array, u: Array, beta: float, s: Array, W: Array, m: Array, out: Array) -> None:
+def half_moments_of_cells(h: Array, u: Array, beta: Local, s: Array, W: Array, m: Array, out: Array) -> None:
     """Moments of xi M and xi^2 M over xi >= 0, then over xi < 0, into `out` of shape (4, h.size)."""
     small_sides_fitted(h, u, beta, s, W, m[2], m[0], m[1])
     for i in range(h.size):
-        out[0, i], out[1, i], out[2, i], out[3, i] = both_sides(h[i], u[i], beta, m[0, i], m[1, i])
+        out[0, i], out[1, i], out[2, i], out[3, i] = both_sides(h[i], u[i], at(beta, i), m[0, i], m[1, i])
 
 
 @kernel
-def flux_of_cells(h: Array, u: Array, beta: float, s: Array, W: Array, m: Array, F1: Array, F2: Array) -> None:
+def flux_of_cells(h: Array, u: Array, beta: Local, s: Array, W: Array, m: Array, F1: Array, F2: Array) -> None:
     """F of (24) at the faces between ghosted cells, shape (nx + 1,); `m`, (4, nx + 2), is room."""
     small_sides_fitted(h, u, beta, s, W, m[2], m[0], m[1])
     faces_of_cells(h, u, beta, m[0], m[1], F1, F2)
@@ -75,13 +76,13 @@ def flux_of_cells(h: Array, u: Array, beta: float, s: Array, W: Array, m: Array,
 
 @kernel
 def flux_fitted(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, s: Array, W: Array, m: Array,
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, s: Array, W: Array, m: Array,
     F1: Array, F2: Array,
 ) -> None:  # fmt: skip
     """F of (24) for every face, shape (nx + 1,), from states of its own; `m`, (5, nx + 1) or more, is room."""
     n = F1.size
-    small_sides_fitted(h_left, u_left, beta, s, W, m[4, :n], m[0, :n], m[1, :n])
-    small_sides_fitted(h_right, u_right, beta, s, W, m[4, :n], m[2, :n], m[3, :n])
+    small_sides_fitted(h_left, u_left, left(beta), s, W, m[4, :n], m[0, :n], m[1, :n])
+    small_sides_fitted(h_right, u_right, right(beta), s, W, m[4, :n], m[2, :n], m[3, :n])
     faces_of_states(h_left, u_left, h_right, u_right, beta, m, F1, F2)
 
 
@@ -91,27 +92,28 @@ class FittedMeasure(WithoutDensity):
     Nodes of neighbours differ, so that transport is known by its moments; the force translates all nodes of a cell.
     """
 
-    def __init__(self, scene: Scene, count: int) -> None:
-        super().__init__(scene)
+    def __init__(self, scene: Scene, sloped: bool, count: int) -> None:
+        super().__init__(scene, sloped)
         self._s, self._W = gauss_jacobi(count)
+        self._of_cells = scene.ground.beta
 
     def half_moments(self, now: Stages) -> Array:
         """Moments over xi > 0 and xi < 0 of each ghosted cell, shape (4, nx + 2)."""
         out = np.empty((4, now.h.size))
-        half_moments_of_cells(now.h, now.u, self._beta, self._s, self._W, self._room, out)
+        half_moments_of_cells(now.h, now.u, self._beta.plus, self._s, self._W, self._room, out)
         return out
 
     def measure(self, h: Array, u: Array) -> tuple[Array, Array]:
         """Nodes and masses of the smaller side of each cell, each of shape (nx, count), for h, u of shape (nx,)."""
-        c = np.sqrt(2.0 * self._beta * np.maximum(h, 0.0))
+        c = np.sqrt(2.0 * self._of_cells * np.maximum(h, 0.0))
         b = np.divide(np.maximum(c - np.abs(u), 0.0), c, out=np.zeros_like(c), where=c > 0)[:, None]
         nodes = c[:, None] * b * (1.0 - self._s)
         masses = 2.0 / np.pi * h[:, None] * b**1.5 * self._W * np.sqrt(2.0 - b * self._s) / (1.0 - self._s)
         return -np.sign(np.where(u == 0, -1.0, u))[:, None] * nodes, masses
 
     def _flux_of_cells(self, h: Array, u: Array, F1: Array, F2: Array) -> None:
-        flux_of_cells(h, u, self._beta, self._s, self._W, self._room, F1, F2)
+        flux_of_cells(h, u, self._beta.plus, self._s, self._W, self._room, F1, F2)
 
     def _flux(self, at: Faces, F1: Array, F2: Array) -> None:
         nodes = (self._s, self._W)
-        flux_fitted(at.h_left, at.u_left, at.h_right, at.u_right, self._beta, *nodes, self._room, F1, F2)
+        flux_fitted(at.h_left, at.u_left, at.h_right, at.u_right, self._beta.faces, *nodes, self._room, F1, F2)

@@ -51,12 +51,12 @@ class OnDemand(Density):
 
     def equilibrium(self, now: Stages) -> float:
         """The half-range sums of M(h, xi - u); returns the outermost occupied node."""
-        self.reach = reach(now, self._beta, False)
+        self.reach = reach(now, self._shown, False)
         if not self._velocity.fits(self.grid, self.reach + self._room):
             self._allocate(self._velocity.grid(self.reach + self._room))
         self._now, self._stands = now, False
         self._made.discard("M")
-        shape = (self._beta, self.grid.dxi, self._averaged)
+        shape = (float(self._beta), self.grid.dxi, self._averaged)
         self._top = sum_cells(
             now.h, now.u, *shape, self._w1, self._w2, self._tile, self._sums, now.low, now.high
         )  # fmt: skip
@@ -75,8 +75,8 @@ class OnDemand(Density):
         at = now.balanced
         states = (at.h_left, at.u_left, at.h_right, at.u_right)
         add_held(
-            now.h, now.u, *states, now.held, now.still, self._beta, self.grid.dxi, self._averaged, self._w1, self._w2,
-            self._P, self._N, self._sums, now.F1, now.F2, now.at_left, now.at_right,
+            now.h, now.u, *states, now.held, now.still, float(self._beta), self.grid.dxi, self._averaged,
+            self._w1, self._w2, self._P, self._N, self._sums, now.F1, now.F2, now.at_left, now.at_right,
         )  # fmt: skip
 
     def transport(self, now: Stages, lam: float) -> None:
@@ -109,7 +109,7 @@ class OnDemand(Density):
         M = self._place("M", self._nx + 2)
         if "M" not in self._made:
             now = self._now
-            self.fill(now.h, now.u, now.h, now.u, M, self.status)
+            self.fill(now.h, now.u, now.h, now.u, self._beta, M, self.status)
             self._made.add("M")
         return M
 
@@ -139,7 +139,8 @@ class OnDemand(Density):
             rows, padded = self._place("rows", 10, grid.half), self._place("padded", 1, 3 * grid.count + 2)[0]
             carry(
                 self._h, self._u, at.h_left, at.u_left, at.h_right, at.u_right, now.at_left, now.at_right,
-                now.J, now.h1, side, self._beta, grid.dxi, self._averaged, self._lam, rows, padded, f, self._spans,
+                now.J, now.h1, side, float(self._beta), grid.dxi, self._averaged, self._lam, rows, padded, f,
+                self._spans,
             )  # fmt: skip
             self._made.add("f")
         return f
@@ -162,5 +163,5 @@ class OnDemand(Density):
         if self._stands:
             return self.M
         M = np.empty((self._nx + 2, self.grid.count))
-        self.fill(self._h, self._u, self._h, self._u, M, Status.empty(self._nx + 2))
+        self.fill(self._h, self._u, self._h, self._u, self._beta, M, Status.empty(self._nx + 2))
         return M

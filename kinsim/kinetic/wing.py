@@ -9,6 +9,7 @@ from ..balance.interface import Faces
 from ..balance.schemes import Scheme
 from ..balance.stages import Array, Stages, reach
 from ..checkpoint import Kept
+from ..local import Sides
 from ..memory import require
 from ..scene import Scene
 from .equilibrium import Equilibrium, Status
@@ -38,7 +39,8 @@ class Density:
     def __init__(
         self, scene: Scene, velocity: Uniform | Window, equilibrium: Equilibrium, force: Force, scheme: Scheme
     ) -> None:
-        self._beta = scene.beta
+        self._beta = scene.ground.beta
+        self._shown = scene.ground.shown(scheme.sloped)
         self._forced = scene.forced
         self._velocity = velocity
         self._equilibrium = equilibrium
@@ -51,7 +53,7 @@ class Density:
         self._sums = np.zeros((4, nx + 2))
         self.reach = 0.0
         self.lost = 0.0
-        self._pull = scene.cells.dx * (abs(scene.chute.sin) + scene.resistance)  # dt |g| = lam * this, at most
+        self._pull = scene.cells.dx * float(np.max(np.abs(scene.ground.pull) + scene.ground.hold))  # >= dx |g|
         self._room = 0.0
         self._allocate(velocity.grid(0.0))
 
@@ -108,10 +110,10 @@ class Density:
 
     def equilibrium(self, now: Stages) -> float:
         """M_i = M(h_i, xi - u_i), (12); returns its outermost occupied node."""
-        self.reach = reach(now, self._beta, self._scheme.uses_balanced)
+        self.reach = reach(now, self._shown, self._scheme.uses_balanced)
         if not self._velocity.fits(self.grid, self.reach + self._room):
             self._allocate(self._velocity.grid(self.reach + self._room))
-        self.fill(*now.plus, *now.plus, self.M, self.status)
+        self.fill(*now.plus, *now.plus, self._shown.plus, self.M, self.status)
         if self._scheme.sloped:
             self._show_slopes(now)
         return outermost(self.M, self.grid.dxi)
@@ -119,7 +121,7 @@ class Density:
     def _show_slopes(self, now: Stages) -> None:
         """Two halves of a cell show themselves at its walls; the density of the cell is their mean."""
         half = self.grid.half
-        self.fill(*now.minus, *now.minus, self._minus, self.status)
+        self.fill(*now.minus, *now.minus, self._shown.minus, self._minus, self.status)
         self.B[:, half:], self.B[:, :half] = self.M[:-1, half:], self._minus[1:, :half]
         np.multiply(0.5, self.M + self._minus, out=self.M)
 
@@ -140,7 +142,7 @@ class Density:
     def balanced_flux(self, now: Stages) -> None:
         """F~: the sums of the density at balanced faces, (25)."""
         at: Faces = now.balanced
-        self.fill(at.h_left, at.u_left, at.h_right, at.u_right, self.B, self.face_status)
+        self.fill(at.h_left, at.u_left, at.h_right, at.u_right, self._shown.faces, self.B, self.face_status)
         P1, P2, N1, N2 = self._sums[:, :-1]
         half_sums(self.B, self._w1, self._w2, P1, P2, N1, N2)
         np.add(P1, N1, out=now.B1)
@@ -166,7 +168,12 @@ class Density:
         """Densities at the held faces `where`; no face sends more than `share` times what stands before it in M."""
         half, at = self.grid.half, now.balanced
         rows = np.empty((where.size, self.grid.count))
-        self.fill(at.h_left[where], at.u_left[where], at.h_right[where], at.u_right[where], rows, status)
+        beta = self._shown.faces
+        if isinstance(beta, tuple):
+            beta = beta[0][where], beta[1][where]
+        states = (at.h_left, at.u_left, at.h_right, at.u_right)
+        h_left, u_left, h_right, u_right = (state[where] for state in states)
+        self.fill(h_left, u_left, h_right, u_right, beta, rows, status)
         np.minimum(rows[:, half:], share * M[where, half:], out=rows[:, half:])
         np.minimum(rows[:, :half], share * M[where + 1, :half], out=rows[:, :half])
         return rows
@@ -230,9 +237,11 @@ class Density:
     def _push(self, f: Array, M: Array, now: Stages, out: Array) -> float:
         return self._force(f, M, now.J, self.pulled(now), self.grid.dxi, out, self.offset)
 
-    def fill(self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, rows: Array, status: Status) -> None:
+    def fill(
+        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, rows: Array, status: Status
+    ) -> None:
         """Write rows of the equilibrium, xi > 0 from the left states and xi < 0 from the right ones."""
-        self._equilibrium.fill(h_left, u_left, h_right, u_right, self._beta, self.grid, rows, status)
+        self._equilibrium.fill(h_left, u_left, h_right, u_right, beta, self.grid, rows, status)
 
     def sums(self, f: Array, mass: Array, momentum: Array) -> None:
         """Sums of f and xi f over the nodes, (20), into arrays of shape (nx,)."""

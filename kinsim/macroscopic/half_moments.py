@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from ..arc import arc
 from ..balance.sides import TINY, both_sides, faces_of_cells, faces_of_states
 from ..kernel import kernel, kernel_inner, kernel_relaxed
+from ..local import Local, Sides, at, left, right
 
 Array = NDArray[np.float64]
 
@@ -42,10 +43,10 @@ def small_side(h: float, speed: float, beta: float) -> tuple[float, float]:
 
 
 @kernel_inner
-def small_sides(h: Array, u: Array, beta: float, m1: Array, m2: Array) -> None:
+def small_sides(h: Array, u: Array, beta: Local, m1: Array, m2: Array) -> None:
     """The same of many states, all arrays of one shape."""
     for i in range(h.size):
-        m1[i], m2[i] = small_side(h[i], abs(u[i]), beta)
+        m1[i], m2[i] = small_side(h[i], abs(u[i]), at(beta, i))
 
 
 @kernel
@@ -58,14 +59,14 @@ def half_moments_closed(h: float, u: float, beta: float) -> tuple[float, float, 
 
 
 @kernel
-def half_moments_of_cells(h: Array, u: Array, beta: float, out: Array) -> None:
+def half_moments_of_cells(h: Array, u: Array, beta: Local, out: Array) -> None:
     """The same of every cell, into `out` of shape (4, h.size)."""
     for i in range(h.size):
-        out[0, i], out[1, i], out[2, i], out[3, i] = half_moments_closed(h[i], u[i], beta)
+        out[0, i], out[1, i], out[2, i], out[3, i] = half_moments_closed(h[i], u[i], at(beta, i))
 
 
 @kernel
-def flux_of_cells(h: Array, u: Array, beta: float, m: Array, F1: Array, F2: Array) -> None:
+def flux_of_cells(h: Array, u: Array, beta: Local, m: Array, F1: Array, F2: Array) -> None:
     """F = (I1 + I2, I3 + I4) of (24) at the faces between ghosted cells, shape (nx + 1,); `m`, (2, nx + 2), is room."""
     small_sides(h, u, beta, m[0], m[1])
     faces_of_cells(h, u, beta, m[0], m[1], F1, F2)
@@ -73,10 +74,10 @@ def flux_of_cells(h: Array, u: Array, beta: float, m: Array, F1: Array, F2: Arra
 
 @kernel
 def flux_closed(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, m: Array, F1: Array, F2: Array
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, m: Array, F1: Array, F2: Array
 ) -> None:
     """F of (24) for every face, shape (nx + 1,), from states of its own; `m`, (4, nx + 1) or more, is room."""
     n = F1.size
-    small_sides(h_left, u_left, beta, m[0, :n], m[1, :n])
-    small_sides(h_right, u_right, beta, m[2, :n], m[3, :n])
+    small_sides(h_left, u_left, left(beta), m[0, :n], m[1, :n])
+    small_sides(h_right, u_right, right(beta), m[2, :n], m[3, :n])
     faces_of_states(h_left, u_left, h_right, u_right, beta, m, F1, F2)

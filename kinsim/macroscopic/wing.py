@@ -16,11 +16,11 @@ class ClosedForm(WithoutDensity):
     def half_moments(self, now: Stages) -> Array:
         """I1, I3 and I2, I4 of each ghosted cell, shape (4, nx + 2)."""
         out = np.empty((4, now.h.size))
-        half_moments_of_cells(now.h, now.u, self._beta, out)
+        half_moments_of_cells(now.h, now.u, self._beta.plus, out)
         return out
 
     def _flux_of_cells(self, h: Array, u: Array, F1: Array, F2: Array) -> None:
-        flux_of_cells(h, u, self._beta, self._room, F1, F2)
+        flux_of_cells(h, u, self._beta.plus, self._room, F1, F2)
 
     def _flux(self, at: Faces, F1: Array, F2: Array) -> None:
-        flux_closed(at.h_left, at.u_left, at.h_right, at.u_right, self._beta, self._room, F1, F2)
+        flux_closed(at.h_left, at.u_left, at.h_right, at.u_right, self._beta.faces, self._room, F1, F2)

@@ -15,6 +15,7 @@ import numpy as np
 
 from ..balance.stages import Array
 from ..errors import InputError
+from ..model.ground import Flat
 from ..scene import Scene
 from ..step import Step
 
@@ -50,18 +51,20 @@ def entropy(scene: Scene, now: Step) -> Entropy:
         raise InputError(
             f"entropy: the step has {now.h.size} cells, the scene {scene.cells.count}; give the step's own scene"
         )
+    if not isinstance(scene.ground, Flat):
+        raise InputError("entropy: the inequality is one of a constant slope; take a scene on one")
     if now.states is None:
         raise InputError(
             "entropy: the step has no single flux per face; take scheme 1, or scheme 4 of order 1 that holds"
         )
-    beta, dt, lam = scene.beta, now.dt, now.dt / scene.cells.dx
+    beta, dt, lam = scene.ground.beta, now.dt, now.dt / scene.cells.dx
     flux = entropy_flux(now.states.h_left, now.states.u_left, beta)
     flux -= entropy_flux(now.states.h_right, -now.states.u_right, beta)
     outflow = lam * (flux[1:] - flux[:-1])
     before, moved, after = (
         of_state(h, q, beta) for h, q in ((now.h, now.h * now.u), (now.h1, now.qhat), (now.h1, now.q1))
     )
-    gravity = 0.5 * dt * scene.chute.sin * (now.qhat + now.q1)
+    gravity = 0.5 * dt * scene.ground.pull * (now.qhat + now.q1)
     shows = now.states
     held = (shows.h_left != now.upwind.h_left) | (shows.h_right != now.upwind.h_right)
     return Entropy(

@@ -2,24 +2,43 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
-End = Literal["open", "wall"]
+from ..value import Number, kind, value
+
+
+@value
+class Inflow:
+    """A stream that stands before an end: height `h` and velocity `u`; with |u| > c in it, all of it comes in."""
+
+    h: Annotated[Number, Field(ge=0)]
+    u: Number
+    kind: Literal["inflow"] = kind("inflow")
+
+
+End = Literal["open", "wall"] | Inflow
 Boundary = Literal["open", "wall", "periodic"] | tuple[End, End]
 
 EXPLAINED = {
     "open": "copies the outermost cell (zero gradient)",
     "wall": "mirrors the outermost cell, so that nothing passes",
     "periodic": "continues at the other end",
+    "inflow": "a stream of given height and velocity, {h = 0.3, u = 2.0}",
 }
 
 
-def ends(boundary: Boundary) -> tuple[str, str]:
+def ends(boundary: Boundary) -> tuple[str | Inflow, str | Inflow]:
     """The kinds of the left and the right end."""
     return (boundary, boundary) if isinstance(boundary, str) else boundary
+
+
+def streams(boundary: Boundary) -> list[Inflow]:
+    """The ends at which a stream comes in."""
+    return [end for end in ends(boundary) if isinstance(end, Inflow)]
 
 
 def shown(boundary: Boundary, nx: int) -> tuple[int, int, bool, bool]:
@@ -36,7 +55,12 @@ def extend(boundary: Boundary, h: NDArray[np.float64], u: NDArray[np.float64]) -
     _fill(right, h, u, -1, -2, 1)
 
 
-def _fill(kind: str, h: NDArray[np.float64], u: NDArray[np.float64], ghost: int, inner: int, across: int) -> None:
+def _fill(
+    kind: str | Inflow, h: NDArray[np.float64], u: NDArray[np.float64], ghost: int, inner: int, across: int
+) -> None:
+    if isinstance(kind, Inflow):
+        h[ghost], u[ghost] = kind.h, kind.u
+        return
     source = across if kind == "periodic" else inner
     h[ghost] = h[source]
     u[ghost] = -u[source] if kind == "wall" else u[source]
@@ -56,8 +80,11 @@ def extend_shown(
 ) -> None:
     """Let the ghost cells show what stands on the other side of their face; (h, u) pairs of shape (nx + 2,)."""
     left, right = ends(boundary)
-    for kind, at, to, across, beyond in ((left, 0, plus, minus, plus), (right, -1, minus, plus, minus)):
+    for end, at, to, across, beyond in ((left, 0, plus, minus, plus), (right, -1, minus, plus, minus)):
         inner, far = (1, -2) if at == 0 else (-2, 1)
         (h, u), (g, v), (k, w) = to, across, beyond
-        h[at] = k[far] if kind == "periodic" else g[inner]
-        u[at] = w[far] if kind == "periodic" else (-v[inner] if kind == "wall" else v[inner])
+        if isinstance(end, Inflow):
+            h[at], u[at] = end.h, end.u
+            continue
+        h[at] = k[far] if end == "periodic" else g[inner]
+        u[at] = w[far] if end == "periodic" else (-v[inner] if end == "wall" else v[inner])

@@ -45,3 +45,9 @@ class Cells:
         """Cell centres, shape (count,); mirrored ends give bitwise mirrored centres."""
         i = np.arange(self.count) + 0.5
         return self.left * ((self.count - i) / self.count) + self.right * (i / self.count)
+
+    @property
+    def faces(self) -> NDArray[np.float64]:
+        """Faces between and beside the cells, shape (count + 1,)."""
+        i = np.arange(self.count + 1.0)
+        return self.left * ((self.count - i) / self.count) + self.right * (i / self.count)

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
+from ..local import Local
 from ..value import Number, kind, value
+from .slope import Slope
+
+
+class Incline(NamedTuple):
+    """What a law of friction asks of the ground: the pull of gravity onto it."""
+
+    cos: Local
 
 
 @value
@@ -28,4 +36,26 @@ class ConstantSlope:
         return math.cos(self.zeta)
 
 
-Chute = ConstantSlope
+@value
+class SmoothChute:
+    """A chute whose slope zeta(x) varies smoothly, (13), with x along it; at most 80 degrees steep.
+
+    Attributes:
+        zeta: The angle against the horizontal in radians.
+        eta: The characteristic curvature, length of the mass over the radius of curvature; 0 leaves out the friction of
+            centrifugal forces.
+        lifting: Where the mass would leave the ground, cos zeta + eta kappa u^2 < 0, friction is off; "warn" reports
+            these cells, "stop" ends the run.
+    """
+
+    zeta: Slope
+    eta: Annotated[Number, Field(ge=0)] = 0.0
+    lifting: Literal["warn", "stop"] = "warn"
+    kind: Literal["smooth"] = kind("smooth")
+
+
+def _constant_unless_named(given: Any) -> Any:
+    return {"kind": "constant", **given} if isinstance(given, dict) else given
+
+
+Chute = Annotated[ConstantSlope | SmoothChute, BeforeValidator(_constant_unless_named), Field(discriminator="kind")]

@@ -3,12 +3,27 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Protocol
 
 from pydantic import Field
 
+from ..local import Local
 from ..value import Number, kind, value
-from .chute import Chute
+
+
+class Pressed(Protocol):
+    """Ground onto which gravity pulls."""
+
+    @property
+    def cos(self) -> Local:
+        """cos zeta, or the normal force where the chute bends (dimensionless)."""
+
+
+class FrictionLaw(Protocol):
+    """A law of friction."""
+
+    def resistance(self, chute: Pressed) -> Local:
+        """R of Definition 1 (dimensionless)."""
 
 
 @value
@@ -17,9 +32,9 @@ class Frictionless:
 
     kind: Literal["frictionless"] = kind("frictionless")
 
-    def resistance(self, chute: Chute) -> float:
+    def resistance(self, chute: Pressed) -> Local:
         """R of Definition 1 (dimensionless)."""
-        return 0.0
+        return 0.0 * chute.cos
 
 
 @value
@@ -29,7 +44,7 @@ class Coulomb:
     delta: Annotated[Number, Field(ge=0, lt=math.pi / 2)]
     kind: Literal["coulomb"] = kind("coulomb")
 
-    def resistance(self, chute: Chute) -> float:
+    def resistance(self, chute: Pressed) -> Local:
         """R of Definition 1 (dimensionless)."""
         return chute.cos * math.tan(self.delta)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -15,6 +14,7 @@ from pydantic_core import core_schema
 from ..errors import InputError
 from ..expression import check_names, evaluate
 from ..value import Number, kind, value
+from .csv_table import read_columns
 
 Array = NDArray[np.float64]
 State = tuple[Array, Array]
@@ -100,31 +100,8 @@ class Table:
         return np.interp(x, places, h), np.interp(x, places, u)
 
     def _columns(self) -> tuple[Array, Array, Array]:
-        if self.path.exists() and not self.path.is_file():
-            raise InputError(f"table {self.path}: is no ordinary file; give a CSV file")
-        try:
-            with self.path.open(newline="", encoding="utf-8-sig") as file:
-                rows = list(csv.reader(line for line in file if line.strip() and not line.lstrip().startswith("#")))
-        except (OSError, UnicodeDecodeError, csv.Error) as error:
-            reason = getattr(error, "strerror", None) or "it is not a CSV file"
-            raise InputError(f"table {self.path}: cannot be read: {reason}") from None
-        header = [name.strip() for name in rows[0]] if rows else []
-        if header not in (["x", "h"], ["x", "h", "u"]):
-            raise InputError(f"table {self.path}: the first line must be x,h or x,h,u, got {','.join(header)[:60]!r}")
-        try:
-            columns = np.array([[float(entry) for entry in row] for row in rows[1:]], dtype=float).reshape(
-                -1, len(header)
-            )
-        except ValueError:
-            raise InputError(
-                f"table {self.path}: each row needs {len(header)} numbers; look for gaps and words"
-            ) from None
-        if len(columns) < 2 or not np.isfinite(columns).all():
-            raise InputError(f"table {self.path}: needs at least two rows of finite numbers")
-        falls = np.flatnonzero(np.diff(columns[:, 0]) <= 0)
-        if falls.size:
-            raise InputError(f"table {self.path}: x does not increase at data row {falls[0] + 2}; sort the rows")
-        return columns[:, 0], columns[:, 1], columns[:, 2] if len(header) == 3 else np.zeros(len(columns))
+        columns = read_columns(self.path, (("x", "h"), ("x", "h", "u")))
+        return columns["x"], columns["h"], columns.get("u", np.zeros(columns["x"].size))
 
 
 def _cell_values(given: Any) -> Array:

@@ -69,7 +69,7 @@ def _pictures(run: Run, dump: xarray.DataArray, rows: list[int], chosen: list[in
     for axes, row in zip(all_axes, rows, strict=True):
         image = axes.pcolormesh(x, xi, dump[row].to_numpy().T, cmap="viridis", vmin=0.0, vmax=top, rasterized=True)
         h, u = _state(run, float(dump["t"][row]), x)
-        c = np.sqrt(2.0 * run.scene.beta * np.maximum(h, 0.0))
+        c = np.sqrt(2.0 * _beta(run, x) * np.maximum(h, 0.0))
         for edge in (u - c, u + c):
             axes.plot(x, edge, color="white", linewidth=1.0)
         for number, cell in enumerate(chosen):
@@ -81,6 +81,11 @@ def _pictures(run: Run, dump: xarray.DataArray, rows: list[int], chosen: list[in
     figure.colorbar(image, ax=list(all_axes), label=rf"{what}; white: $u \pm c$", pad=0.01)
 
 
+def _beta(run: Run, x: Array) -> Array:
+    """beta of the cells at the places x."""
+    return np.asarray(np.interp(x, run.x, np.broadcast_to(run.scene.beta, run.x.shape)))
+
+
 def _cuts(run: Run, dump: xarray.DataArray, chosen: list[int], figure: Any) -> None:
     all_axes = np.atleast_1d(figure.subplots(1, len(chosen), sharey=True))
     xi, t = dump["xi"].to_numpy(), float(dump["t"][-1])
@@ -88,13 +93,14 @@ def _cuts(run: Run, dump: xarray.DataArray, chosen: list[int], figure: Any) -> N
     h, u = _state(run, t, x)
     for number, (axes, cell) in enumerate(zip(all_axes, chosen, strict=True)):
         fine = np.linspace(xi[0], xi[-1], 801)
-        square = 2.0 * run.scene.beta * max(h[cell], 0.0) - (fine - u[cell]) ** 2
-        M = np.sqrt(np.maximum(square, 0.0)) / (np.pi * run.scene.beta)
+        beta = _beta(run, x)[cell]
+        square = 2.0 * beta * max(h[cell], 0.0) - (fine - u[cell]) ** 2
+        M = np.sqrt(np.maximum(square, 0.0)) / (np.pi * beta)
         moved = float(dump["offset"][-1, cell]) if "offset" in dump.coords else 0.0
         f, edges = dump[-1, cell].to_numpy(), _edges(xi) + moved
         if _is_held(dump):  # the outer shell of M: what is left of M goes on
-            here = np.sqrt(np.maximum(2.0 * run.scene.beta * max(h[cell], 0.0) - (xi - u[cell]) ** 2, 0.0))
-            here /= np.pi * run.scene.beta
+            here = np.sqrt(np.maximum(2.0 * beta * max(h[cell], 0.0) - (xi - u[cell]) ** 2, 0.0))
+            here /= np.pi * beta
             axes.stairs(
                 here, edges, baseline=np.maximum(here - f, 0.0), fill=True, color=_colour(number), label="held back"
             )

@@ -9,10 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..balance.stages import Array
-from ..film.reel import Reel, equilibrium
+from ..film.reel import Reel, equilibrium, visible
+from .bed import Bed, curved
 
 SIZES = {True: (9.0, 4.4), False: (5.6, 4.4)}
 """Width and height in inches of letters 10 points high, with a density and without."""
+
+BED = 2.6
+"""Inches that a chute takes."""
 
 LINES = 300
 """Velocities at which a frame shows the density."""
@@ -29,6 +33,8 @@ class Pictures(Sequence[NDArray[np.uint8]]):
         from matplotlib.figure import Figure
 
         across, down = SIZES[reel.kinetic]
+        chute = curved(reel.scene)
+        down += BED * chute
         dpi = width / across
         figure = Figure(figsize=(across, round(down * dpi) / dpi), dpi=dpi, layout="constrained")
         canvas: Any = FigureCanvasAgg(figure)
@@ -36,9 +42,15 @@ class Pictures(Sequence[NDArray[np.uint8]]):
         times = [f"{time:.{_decimals(reel.t[-1])}f}" for time in reel.t]
         self._titles = [f"t = {time:>{len(times[-1])}}   {reel.title}" for time in times]
         self._title = figure.suptitle(self._titles[-1], x=0.01, ha="left", fontsize="medium")
-        grid = figure.add_gridspec(2, 2 if reel.kinetic else 1, width_ratios=(1.25, 1.0) if reel.kinetic else None)
-        curves = _Curves(reel, figure.add_subplot(grid[0, -1]), figure.add_subplot(grid[1, -1]))
-        self._parts: list[Any] = [curves, *([_Phase(reel, figure, grid)] if reel.kinetic else [])]
+        figures: Any = figure
+        if chute:
+            parts: Any = figure.subfigures(2, 1, height_ratios=(BED, down - BED))
+            top, figures = parts
+        grid = figures.add_gridspec(2, 2 if reel.kinetic else 1, width_ratios=(1.25, 1.0) if reel.kinetic else None)
+        curves = _Curves(reel, figures.add_subplot(grid[0, -1]), figures.add_subplot(grid[1, -1]))
+        self._parts: list[Any] = [curves, *([_Phase(reel, figures, grid)] if reel.kinetic else [])]
+        if chute:
+            self._parts.append(_OnTheBed(reel, top.subplots()))
         self._moving = [self._title, *(artist for part in self._parts for artist in part.moving)]
         for artist in self._moving:
             artist.set_animated(True)
@@ -60,13 +72,33 @@ class Pictures(Sequence[NDArray[np.uint8]]):
         return np.asarray(self._canvas.buffer_rgba())[..., :3].copy()
 
 
+class _OnTheBed:
+    """The mass upon the chute."""
+
+    def __init__(self, reel: Reel, axes: Any) -> None:
+        self._h = np.maximum(reel.h, 0.0)
+        self._bed = Bed.of(reel.scene, float(self._h.max()))
+        self._bed.draw(axes)
+        axes.set_title(f"on the chute, {self._bed.words}", fontsize="small")
+        for row in (0, -1):  # so that the axes leave room for both
+            axes.update_datalim(self._bed.outline(self._h[row]))
+        self._mass = axes.fill(*self._bed.outline(self._h[0]).T, color=OWN["color"], alpha=0.6, linewidth=0.8)[0]
+        self.moving = [self._mass]
+
+    def show(self, row: int) -> None:
+        self._mass.set_xy(self._bed.outline(self._h[row]))
+
+
 class _Curves:
     """h and u, and those of the twin."""
 
     def __init__(self, reel: Reel, heights: Any, velocities: Any) -> None:
         twin = reel.twin or (None, None)
         self._lines = []
-        for axes, own, other in ((heights, reel.h, twin[0]), (velocities, reel.u, twin[1])):
+        for axes, own, other in (
+            (heights, reel.h, twin[0]),
+            (velocities, visible(reel.h, reel.u), visible(*twin) if reel.twin else None),
+        ):
             names = ("kinetic" if reel.kinetic else "closed form", "closed-form twin")
             for values, style, name in ((own, OWN, names[0]), (other, TWIN, names[1])):
                 if values is not None:
@@ -94,7 +126,8 @@ class _Phase:
     def __init__(self, reel: Reel, figure: Any, grid: Any) -> None:
         self._reel = reel
         self._c = np.sqrt(2.0 * reel.scene.beta * np.maximum(reel.h, 0.0))
-        low, high = _span(reel.u - self._c, reel.u + self._c)
+        self._u = visible(reel.h, reel.u)
+        low, high = _span(self._u - self._c, self._u + self._c)
         if reel.density is not None:
             half = 0.5 * _width(reel.density.xi)
             low = max(low, float(reel.density.xi[0] + reel.density.offset.min()) - half)
@@ -107,7 +140,7 @@ class _Phase:
             cmap="viridis", vmin=0.0, vmax=self._largest(), interpolation="nearest",
         )  # fmt: skip
         styles = ("-", "-", ":")
-        self._edges = [axes.plot(reel.scene.x, reel.u[0], style, color="white", linewidth=1.2)[0] for style in styles]
+        self._edges = [axes.plot(reel.scene.x, self._u[0], style, color="white", linewidth=1.2)[0] for style in styles]
         axes.set_title(r"white: support edges $u \pm c$; dotted: mean $u$", fontsize="small")
         axes.set_xlabel("x")
         axes.set_ylabel(r"particle velocity $\xi$")
@@ -118,7 +151,7 @@ class _Phase:
 
     def show(self, row: int) -> None:
         self._image.set_data(self._density(row).T)
-        u, c = self._reel.u[row], self._c[row]
+        u, c = self._u[row], self._c[row]
         for line, values in zip(self._edges, (u - c, u + c, u), strict=True):
             line.set_ydata(values)
 
@@ -126,7 +159,7 @@ class _Phase:
         """The density at the velocities shown, shape (nx, LINES): of the velocity cell that holds them."""
         kept = self._reel.density
         if kept is None:
-            return equilibrium(self._reel.h[row], self._reel.u[row], self._reel.scene.beta, self._xi)
+            return equilibrium(self._reel.h[row], self._u[row], self._reel.scene.beta, self._xi)
         places = (self._xi - kept.offset[row][:, None] - kept.xi[0]) / _width(kept.xi) + 0.5
         column = np.clip(np.floor(places).astype(np.intp), 0, kept.xi.size - 1)
         f = np.take_along_axis(kept.f[row], column, axis=1)
@@ -134,7 +167,7 @@ class _Phase:
 
     def _largest(self) -> float:
         kept, c = self._reel.density, self._c
-        return float(kept.f.max() if kept is not None else c.max() / (np.pi * self._reel.scene.beta)) or 1.0
+        return float(kept.f.max() if kept is not None else (c / (np.pi * self._reel.scene.beta)).max()) or 1.0
 
 
 def _decimals(end: float) -> int:

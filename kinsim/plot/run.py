@@ -10,9 +10,10 @@ import numpy as np
 from ..balance.stages import Array
 from ..errors import InputError
 from ..exact.of_scene import exact_of
-from ..film.reel import equilibrium
+from ..film.reel import equilibrium, visible
 from ..run import Run
 from ..watch.dump import LONG_NAMES
+from .bed import Bed, curved
 from .picture import save
 
 if TYPE_CHECKING:
@@ -35,10 +36,17 @@ def draw(run: Run) -> Figure:
     """h and u at several times, and the density over (x, xi) at the end."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(9, 10), layout="constrained")
-    heights, velocities, phase = figure.subplots(3, 1, sharex=True, height_ratios=(1, 1, 1.3))
+    chute = curved(run.scene)
+    figure = Figure(figsize=(9, 13 if chute else 10), layout="constrained")
+    ratios = (1.2, 1, 1, 1.3) if chute else (1, 1, 1.3)
+    *bed, heights, velocities, phase = figure.subplots(len(ratios), 1, height_ratios=ratios)
+    for axes in (heights, velocities):
+        axes.sharex(phase)
+        axes.tick_params(labelbottom=False)
     figure.suptitle(f"{run.scene.title or 'untitled'}: {run.method.kind}, scheme {run.method.scheme}")
     _curves(run, heights, velocities)
+    for axes in bed:
+        _on_the_bed(run, axes)
     image, what = _phase(run, phase)
     figure.colorbar(image, ax=phase, label=what, pad=0.01)
     phase.set_xlabel("x (all quantities dimensionless)")
@@ -54,7 +62,7 @@ def _curves(run: Run, heights: Any, velocities: Any) -> None:
     exact = exact_of(run.scene)
     for row, colour in zip(rows, colours, strict=True):
         heights.plot(run.x, run.h[row], color=colour, label=f"t = {run.t[row]:.3g}")
-        velocities.plot(run.x, run.u[row], color=colour)
+        velocities.plot(run.x, visible(run.h[row], run.u[row]), color=colour)
         if exact is not None and row:
             _overlay(exact, run, row, heights, velocities, "exact" if row == rows[-1] else None)
     heights.set_ylabel("height h")
@@ -64,6 +72,23 @@ def _curves(run: Run, heights: Any, velocities: Any) -> None:
         axes.grid(alpha=0.3)
     entries = len(heights.get_legend_handles_labels()[1])
     heights.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=entries, frameon=False, columnspacing=1.2)
+
+
+def _on_the_bed(run: Run, axes: Any) -> None:
+    """The mass upon the chute, at the times of the curves."""
+    from matplotlib import colormaps
+
+    rows = telling_rows(run.h, CURVES)
+    bed = Bed.of(run.scene, float(run.h.max()))
+    bed.draw(axes)
+    for row, colour in zip(rows, colormaps["viridis_r"](np.linspace(0.1, 1.0, len(rows))), strict=True):
+        axes.fill(*bed.outline(np.maximum(run.h[row], 0.0)).T, color=colour, alpha=0.25, linewidth=0.0)
+        axes.plot(*bed.surface(np.maximum(run.h[row], 0.0)), color=colour, linewidth=1.0)
+    begin, end = (float(run.entries.get(name, [np.nan])[-1]) for name in ("lifted_from", "lifted_to"))
+    if np.isfinite(begin):
+        bed.mark(axes, run.scene, begin, end, "the mass left the ground here")
+        axes.legend(loc="upper right", frameon=False)
+    axes.set_title(f"on the chute, {bed.words}", fontsize="medium")
 
 
 def _overlay(exact: Any, run: Run, row: int, heights: Any, velocities: Any, label: str | None) -> None:
@@ -86,7 +111,8 @@ def telling_rows(h: Array, count: int) -> list[int]:
 
 
 def _phase(run: Run, axes: Any) -> tuple[Any, str]:
-    h, u = np.maximum(run.h[-1], 0.0), run.u[-1]
+    h = np.maximum(run.h[-1], 0.0)
+    u = visible(h, run.u[-1])
     c = np.sqrt(2.0 * run.scene.beta * h)
     low, high = min(0.0, float((u - c).min())), max(0.0, float((u + c).max()))
     span = (high - low) or 1.0

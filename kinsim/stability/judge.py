@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from ..balance.schemes import flat
 from ..balance.stages import Array
 from ..measure.entropy import of_state
 from ..run import ENDED
@@ -103,10 +104,11 @@ def rise(scene: Scene, h: Array, q: Array) -> float:
     """
     unit = float(np.max(h)) or 1.0
     h, x = h / unit, scene.x
-    place = scene.chute.sin * (x.max() - x if scene.chute.sin > 0 else x.min() - x) * h
-    energy = (of_state(h, q / unit, scene.beta * unit) + place).sum(axis=1)
+    pull = flat(scene).pull
+    place = pull * (x.max() - x if pull > 0 else x.min() - x) * h
+    energy = (of_state(h, q / unit, flat(scene).beta * unit) + place).sum(axis=1)
     size = float(np.abs(energy).max())
-    unknown = abs(scene.chute.sin) * scene.cells.dx * float(h[0].sum())
+    unknown = abs(pull) * scene.cells.dx * float(h[0].sum())
     most = float(np.max(energy - np.minimum.accumulate(energy)))
     return max(most - unknown, 0.0) / size if size > 0.0 else 0.0
 

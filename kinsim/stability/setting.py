@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from ..balance.schemes import flat
 from ..clock import Courant
 from ..kinetic.velocity import Uniform
 from ..method import Kinetic, Macroscopic
@@ -72,12 +73,13 @@ class Setting:
         if self.mass != "hump":
             h = np.where(np.arange(self.count) == self.count // 2, self.scale, 0.0) * (self.mass == "one cell")
         h = np.where(y < 0.5, h, h / self.ratio)
-        flat = Scene(
+        plain = Scene(
             Cells(0.0, self.count * self.dx, self.count), Profile(h), ConstantSlope(self.zeta),
             Coulomb(self.delta) if self.delta else Frictionless(), "wall", self.epsilon,
         )  # fmt: skip
-        u = self.froude * math.sqrt(2.0 * flat.beta * h.max()) * np.where(h > 0, 1.0, 0.0)
-        return replace(flat, heap=Profile(h, u))
+        ground = flat(plain)
+        u = self.froude * math.sqrt(2.0 * ground.beta * h.max()) * np.where(h > 0, 1.0, 0.0)
+        return replace(plain, heap=Profile(h, u))
 
     @property
     def nudged(self) -> Profile:
@@ -97,11 +99,11 @@ class Setting:
     @property
     def clock(self) -> Courant:
         """About `steps` steps, fewer where gravity accelerates the mass much."""
-        scene = self.scene
+        scene, ground = self.scene, flat(self.scene)
         number = 0.9 * largest_courant(self.method) if self.number is None else self.number
         fastest = scene.fastest
         way = self.times * self.steps * number * scene.cells.dx
-        ends = [math.sqrt(2.0 * way / pull) for pull in [abs(scene.chute.sin) + scene.resistance] if pull > 0.0]
+        ends = [math.sqrt(2.0 * way / pull) for pull in [abs(ground.pull) + ground.hold] if pull > 0.0]
         end = min([*ends, *([way / fastest] if fastest > 0.0 else [])], default=way)
         return Courant(number, end, most=math.ceil(MOST * max(self.times, 1.0) * self.steps))
 

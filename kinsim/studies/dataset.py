@@ -12,7 +12,7 @@ import numpy as np
 from ..expression import evaluate
 from ..measure.compare import method_name
 from ..method import Kinetic, Macroscopic
-from ..watch.ledger import COLUMNS, DENSITY_COLUMNS
+from ..watch.ledger import EVERY_COLUMN
 from .record import Record
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def _shared_places(made: xarray.Dataset, dims: tuple[str, ...]) -> xarray.Datase
 
 
 def _attrs(name: str) -> dict[str, str]:
-    words = WORDS | COLUMNS | DENSITY_COLUMNS
+    words = WORDS | EVERY_COLUMN
     plain = name.removeprefix("history_")
     said = words.get(name) or f"{words.get(plain, {'q': 'momentum h u'}.get(plain, plain))}, row by row"
     return {"long_name": said} if name in TEXT else {"long_name": said, "units": UNITS.get(name, "1")}

@@ -17,7 +17,7 @@ from ..errors import InputError
 from ..run import Run
 from ..simulate import Progress, simulate
 from ..store import replacing
-from ..watch.ledger import COLUMNS, DENSITY_COLUMNS
+from ..watch.ledger import EVERY_COLUMN
 from .member import ONCE, Member
 
 LARGEST = {"u_max", "courant", "iterations", "residual"}
@@ -85,7 +85,7 @@ def check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
     Raises:
         InputError: One is not.
     """
-    known = ("h", "q", "u", *COLUMNS, *DENSITY_COLUMNS)
+    known = ("h", "q", "u", *EVERY_COLUMN)
     for name in fields:
         if name not in known:
             raise InputError(f"study: no field {name!r}; choose from {', '.join(known)}")

@@ -115,7 +115,7 @@ def _parts(scene: Scene, seen: Advice, cost: dict[str, float]) -> tuple[Part, ..
     def times(way: str, of: str) -> str:
         return f"{cost[way] / cost[of]:.2g} times a step of {of}"
 
-    pull, hold = abs(scene.chute.sin), scene.resistance
+    pull, hold = float(np.max(np.abs(scene.pull))), float(np.max(scene.resistance))
     if hold == 0.0:
         rests = "there is none"
     else:
@@ -128,7 +128,7 @@ def _parts(scene: Scene, seen: Advice, cost: dict[str, float]) -> tuple[Part, ..
     mixed = (moving > 0) & (resting > 0) & (hold > 0.0)
     settles = float(seen.moving[-1]) == 0.0
     return (
-        Part("pull of the chute", pull > 0.0, f"sin zeta = {scene.chute.sin:.3g}", "nothing of note"),
+        Part("pull of the chute", pull > 0.0, f"|sin zeta| = {pull:.3g}", "nothing of note"),
         Part("friction", hold > 0.0, rests, friction),
         Part("static friction (scheme 4)", 0.0 < hold >= pull and bool(resting.any()),
              f"up to {_percent(resting.max())} of the cells hold mass at rest after the start",

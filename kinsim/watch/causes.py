@@ -12,6 +12,7 @@ from ..checkpoint import Kept
 from ..kernel import kernel
 from ..kinetic.velocity import Grid
 from ..kinetic.wing import Density
+from ..local import Local, at
 from ..scene import Scene
 from ..stepper import Stepper
 
@@ -157,11 +158,11 @@ class Causes:
 
 
 @kernel
-def quantities(f: Array, xi: Array, offset: Array, beta: float, flux: int) -> tuple[float, float, float, float]:
+def quantities(f: Array, xi: Array, offset: Array, beta: Local, flux: int) -> tuple[float, float, float, float]:
     """Sums of f, xi f, xi^2 f and H(f, xi), times xi if `flux` is 1; node j of row i stands at xi_j + offset_i."""
-    cubic = np.pi * np.pi * beta * beta / 6.0
     m0, m1, m2, entropy = 0.0, 0.0, 0.0, 0.0
     for i in range(f.shape[0]):
+        cubic = np.pi * np.pi * at(beta, i) * at(beta, i) / 6.0
         r0, r1, r2, r3 = 0.0, 0.0, 0.0, 0.0
         for j in range(xi.size):
             v = xi[j] + offset[i]

@@ -13,7 +13,7 @@ from ..checkpoint import Kept
 from ..errors import InputError
 from ..kinetic.velocity import Grid
 from ..value import Number, Whole, value
-from .ledger import COLUMNS, DENSITY_COLUMNS
+from .ledger import EVERY_COLUMN
 
 if TYPE_CHECKING:
     import xarray
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ..kinetic.wing import Density
     from ..scene import Scene
 
-TAKEN = {"t", "x", "xi", "h", "q", "u", "stage", "quantity", *COLUMNS, *DENSITY_COLUMNS}
+TAKEN = {"t", "x", "xi", "h", "q", "u", "stage", "quantity", *EVERY_COLUMN}
 """Names of other parts of a run."""
 
 Stage = Literal["equilibrium", "held", "transport", "force"]

@@ -7,13 +7,15 @@ import math
 import numpy as np
 
 from ..balance.stages import Array, Stages
-from ..checkpoint import Kept
+from ..checkpoint import Kept, part, under
 from ..kinetic.equilibrium import Status
 from ..kinetic.equilibrium.status import FALLBACKS, MASS_ONLY, TWO_MOMENTS
 from ..kinetic.shift import shift_linear
 from ..kinetic.wing import Density
+from ..local import Local
 from ..scene import Scene
 from ..stepper import Books, Stepper
+from .lift import LIFT_COLUMNS, lift_of
 from .survey import Survey
 
 COLUMNS = {
@@ -45,12 +47,15 @@ DENSITY_COLUMNS = {
 }
 """Further columns of a kinetic run on a velocity grid."""
 
+EVERY_COLUMN = COLUMNS | DENSITY_COLUMNS | LIFT_COLUMNS
+
 
 class Ledger:
     """Notes every step, and makes a row of it when the state is saved."""
 
     def __init__(self, scene: Scene, stepper: Stepper) -> None:
         self._scene, self._stepper = scene, stepper
+        self.lift = lift_of(scene)
         self._rows: list[dict[str, float]] = []
         self._booked = [0.0] * len(Books._fields)
         self._fallbacks = np.zeros(len(FALLBACKS), dtype=np.int64)
@@ -73,8 +78,8 @@ class Ledger:
         self._courant = max(self._courant, courant)
         self.least_height = min(self.least_height, look.h_min)
         self.worst_courant = max(self.worst_courant, courant)
-        for at, part in enumerate(books):
-            self._booked[at] += part
+        for at, change in enumerate(books):
+            self._booked[at] += change
         if density is not None:
             self._f_min = min(self._f_min, density.least())
             self.least_density = min(self.least_density, self._f_min)
@@ -99,10 +104,10 @@ class Ledger:
         if density is not None:
             row |= dict.fromkeys(DENSITY_COLUMNS, 0.0)
             if started:
-                row |= departure(density, h, q, dx)
+                row |= departure(density, h, q, self._scene.beta, dx)
                 row |= {"f_min": self._f_min, **self._fallen()}
                 row |= {"iterations": self._iterations, "residual": self._residual}
-        self._rows.append(row)
+        self._rows.append(row | self.lift.row())
         self._forget()
 
     def columns(self) -> dict[str, Array]:
@@ -122,7 +127,7 @@ class Ledger:
         return {
             "names": np.array(names), "rows": np.array([[row[name] for name in names] for row in self._rows]),
             "booked": np.array(self._booked), "fallbacks": self._fallbacks.copy(),
-            "since": np.array(since, dtype=float),
+            "since": np.array(since, dtype=float), **under("lift", self.lift.kept()),
         }  # fmt: skip
 
     def restore(self, kept: Kept) -> None:
@@ -133,6 +138,7 @@ class Ledger:
         (self.least_height, self.least_density, self.worst_courant, self._h_min, self._f_min, self._u_max,
          self._courant, self._residual, iterations) = kept["since"].tolist()  # fmt: skip
         self._iterations = int(iterations)
+        self.lift.restore(part("lift", kept))
 
     def _note_status(self, status: Status, rows: slice) -> None:
         self._fallbacks += np.bincount(status.fallback[rows], minlength=len(FALLBACKS))
@@ -161,11 +167,11 @@ def held(now: Stages) -> float:
     return 0.5 * float(math.fsum(back) + math.fsum(forth))
 
 
-def departure(density: Density, h: Array, q: Array, dx: float) -> dict[str, float]:
+def departure(density: Density, h: Array, q: Array, beta: Local, dx: float) -> dict[str, float]:
     """How f, after the force, departs from the new state (h, q) and from its equilibrium."""
     u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
     M = np.empty_like(density.f)
-    density.fill(h, u, h, u, M, Status.empty(h.size))
+    density.fill(h, u, h, u, beta, M, Status.empty(h.size))
     f = density.f
     if density.offset.any():
         f = np.empty_like(density.f)

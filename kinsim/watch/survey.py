@@ -8,6 +8,7 @@ import numpy as np
 
 from ..balance.stages import LANES, Array, largest
 from ..kernel import kernel, kernel_relaxed
+from ..local import Local, at
 
 ROOM = np.empty((5, LANES))
 """What `look_over` works in; kernels hold the interpreter's lock, so that one room serves all threads."""
@@ -24,7 +25,7 @@ class Survey(NamedTuple):
     bad: int
 
     @classmethod
-    def of(cls, h: Array, q: Array, beta: float) -> Survey:
+    def of(cls, h: Array, q: Array, beta: Local) -> Survey:
         """Of the state (h, q), each of shape (nx,); without extremes where it is not finite."""
         return cls(*look_over(h, q, beta, ROOM))
 
@@ -39,7 +40,7 @@ def all_finite(h: Array, q: Array) -> bool:
 
 
 @kernel
-def look_over(h: Array, q: Array, beta: float, room: Array) -> tuple[float, float, float, float, float, int]:
+def look_over(h: Array, q: Array, beta: Local, room: Array) -> tuple[float, float, float, float, float, int]:
     """The entries of a `Survey`; `room`, shape (5, LANES), keeps as many extremes of each kind side by side."""
     if not all_finite(h, q):
         for i in range(h.size):
@@ -59,5 +60,5 @@ def look_over(h: Array, q: Array, beta: float, room: Array) -> tuple[float, floa
             k = i - first
             u = abs(q[i]) / h[i] if h[i] > 0.0 else 0.0
             quick[k] = max(quick[k], u)
-            far[k] = max(far[k], u + np.sqrt(2.0 * beta * max(h[i], 0.0)))
+            far[k] = max(far[k], u + np.sqrt(2.0 * at(beta, i) * max(h[i], 0.0)))
     return -largest(low), largest(quick), largest(far), largest(much), largest(deep), -1

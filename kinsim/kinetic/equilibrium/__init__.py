@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import Literal, Protocol
 
+from ...local import Sides
 from ..velocity import Grid
 from .averages import CellAverage, Sampled
 from .entropic import Entropic
@@ -24,7 +25,7 @@ class Equilibrium(Protocol):
         """Velocity cells it needs at least."""
 
     def fill(
-        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, grid: Grid,
+        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, grid: Grid,
         rows: Array, status: Status,
     ) -> None:  # fmt: skip
         """Write rows[i, j]: M(h_left, xi_j - u_left) for xi_j > 0 and M(h_right, xi_j - u_right) for xi_j < 0."""

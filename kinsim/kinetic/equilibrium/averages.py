@@ -9,6 +9,7 @@ import numpy as np
 
 from ...arc import arc
 from ...kernel import kernel, kernel_inner
+from ...local import Local, Sides, at, left, right
 from ..velocity import Grid
 from .rows import Array, put
 from .status import Status
@@ -21,7 +22,7 @@ class Sampled:
     least = 2
 
     def fill(
-        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, grid: Grid,
+        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, grid: Grid,
         rows: Array, status: Status,
     ) -> None:  # fmt: skip
         sampled(h_left, u_left, h_right, u_right, beta, grid.dxi, rows)
@@ -40,7 +41,7 @@ class CellAverage:
     least = 2
 
     def fill(
-        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, grid: Grid,
+        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, grid: Grid,
         rows: Array, status: Status,
     ) -> None:  # fmt: skip
         cell_average(h_left, u_left, h_right, u_right, beta, grid.dxi, rows)
@@ -50,14 +51,14 @@ class CellAverage:
 
 
 @kernel
-def sampled(h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, dxi: float, rows: Array) -> None:
+def sampled(h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, dxi: float, rows: Array) -> None:
     """M = sqrt(max(2 beta h - (xi - u)^2, 0)) / (pi beta) at the nodes."""
     half = rows.shape[1] // 2
     side = np.empty(half)
     for i in range(rows.shape[0]):
-        sample_side(h_left[i], u_left[i], beta, dxi, side)
+        sample_side(h_left[i], u_left[i], at(left(beta), i), dxi, side)
         put(side, rows[i], True)
-        sample_side(h_right[i], -u_right[i], beta, dxi, side)
+        sample_side(h_right[i], -u_right[i], at(right(beta), i), dxi, side)
         put(side, rows[i], False)
 
 
@@ -88,15 +89,15 @@ def sample_inside(h: float, u: float, beta: float, dxi: float, side: Array) -> t
 
 @kernel
 def cell_average(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, dxi: float, rows: Array
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, dxi: float, rows: Array
 ) -> None:
     """Averages of M over velocity cells."""
     half = rows.shape[1] // 2
     side = np.empty(half)
     for i in range(rows.shape[0]):
-        average_side(h_left[i], u_left[i], beta, dxi, side)
+        average_side(h_left[i], u_left[i], at(left(beta), i), dxi, side)
         put(side, rows[i], True)
-        average_side(h_right[i], -u_right[i], beta, dxi, side)
+        average_side(h_right[i], -u_right[i], at(right(beta), i), dxi, side)
         put(side, rows[i], False)
 
 
@@ -140,12 +141,12 @@ def antiderivative(t: float) -> float:
 
 
 @kernel
-def mass_outside(h: Array, u: Array, beta: float, bound: float) -> float:
+def mass_outside(h: Array, u: Array, beta: Local, bound: float) -> float:
     """The mass of M beyond |xi| = bound, summed over the cells."""
     outside = 0.0
     for i in range(h.size):
         if h[i] > 0.0:
-            c = math.sqrt(2.0 * beta * h[i])
+            c = math.sqrt(2.0 * at(beta, i) * h[i])
             inside = antiderivative((bound - u[i]) / c) - antiderivative((-bound - u[i]) / c)
             outside += h[i] * max(1.0 - inside / math.pi, 0.0)
     return outside

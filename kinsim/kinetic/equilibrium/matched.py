@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...kernel import kernel, kernel_inner
+from ...local import Sides, at, left, right
 from ..velocity import Grid
 from .averages import average_side
 from .few_nodes import few_nodes
@@ -30,7 +31,7 @@ class Matched:
     least = 4
 
     def fill(
-        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, grid: Grid,
+        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, grid: Grid,
         rows: Array, status: Status,
     ) -> None:  # fmt: skip
         matched(
@@ -44,7 +45,7 @@ class Matched:
 
 @kernel
 def matched(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float, dxi: float, rows: Array,
+    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, dxi: float, rows: Array,
     iterations: NDArray[np.int64], residual: Array, fallback: NDArray[np.int64],
 ) -> None:  # fmt: skip
     """Fill rows, and report the worse of the two states of each."""
@@ -52,11 +53,11 @@ def matched(
     P, N = np.empty(half), np.empty(half)
     for i in range(rows.shape[0]):
         u = u_left[i]
-        tries, defect, fell = matched_sides(h_left[i], abs(u), beta, dxi, P, N)
+        tries, defect, fell = matched_sides(h_left[i], abs(u), at(left(beta), i), dxi, P, N)
         put(P if u >= 0.0 else N, rows[i], True)
-        if h_right[i] != h_left[i] or u_right[i] != u:
+        if h_right[i] != h_left[i] or u_right[i] != u or at(left(beta), i) != at(right(beta), i):
             u = u_right[i]
-            more, rest, also = matched_sides(h_right[i], abs(u), beta, dxi, P, N)
+            more, rest, also = matched_sides(h_right[i], abs(u), at(right(beta), i), dxi, P, N)
             tries, defect, fell = max(tries, more), max(defect, rest), max(fell, also)
         put(N if u >= 0.0 else P, rows[i], False)
         iterations[i], residual[i], fallback[i] = tries, defect, fell
