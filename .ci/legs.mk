@@ -37,6 +37,13 @@ scenes:
 	    kinsim run "$$scene" $$short --method macroscopic --plot "$(WORK)/$$scene-macroscopic.png"
 	    kinsim compare "$$scene" --set clock.steps=60 --set method.velocity.count=32 >/dev/null
 	done
+	for scene in bend bend-pressed exponential jump crest; do
+	    short="--quiet --set clock.end=4 --set cells.count=64"
+	    kinsim run "$$scene" $$short --set method.velocity.count=32 --out "$(WORK)/$$scene.nc" --plot "$(WORK)/$$scene.png"
+	    kinsim compare "$$scene" --set clock.end=1 --set cells.count=64 --set method.velocity.count=32 >/dev/null
+	done
+	kinsim run rest-gallery --quiet --set clock.steps=60 --set method.velocity.count=32 --plot "$(WORK)/rest.png"
+	kinsim animate bend --quiet --method macroscopic --set cells.count=64 --frames 5 -o "$(WORK)/bend.gif"
 	python -m kinsim --version
 	echo "--- $@: $$SECONDS s"
 
