@@ -24,6 +24,7 @@ speed:
 
 site:
 	@$(MAKE) --file Makefile docs
+	python .ci/browser.py tests/site_in_browser.py
 	echo "--- $@: $$SECONDS s"
 
 pages:
