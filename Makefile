@@ -52,4 +52,4 @@ trade: .venv/installed
 	$(BIN)/python .ci/tables.py out/validation docs/trade.md
 
 clean:
-	rm -rf .venv out build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf .venv out docs/reference/made build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis

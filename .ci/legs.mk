@@ -4,7 +4,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
-LEGS := validation speed site pages scenes demo
+LEGS := validation pages speed site scenes demo
 .PHONY: all $(LEGS)
 
 all: $(LEGS)
