@@ -25,7 +25,7 @@ def sweep(
     field: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Keep this history too: h, mass, ...; may be repeated.")
     ] = None,
-    out: Annotated[Path, typer.Option(metavar="SWEEP.NC", help="Write all members to this netCDF file.")] = Path(
+    out: Annotated[Path, typer.Option(metavar="SWEEP.NC", help="Write here; a .csv has a row per member.")] = Path(
         "sweep.nc"
     ),
     resume: Resume = False,
@@ -42,12 +42,12 @@ def sweep(
     from .overview import saved_every
     from .progress import Watched
     from .report_many import study_report
-    from .store import check_destination, write_netcdf
+    from .studies.file import check_study_file, write_study
     from .studies.study import study
     from .studies.vary import read_over
 
     file = read_scene(name, settings, None)
-    check_destination(out)
+    check_study_file(out)
     keep_apart(name, out)
     with Watched(quiet) as progress:
         found = study(
@@ -65,7 +65,7 @@ def sweep(
             scheduler=scheduler,
             tell=progress.tell,
         )
-    write_netcdf(found, out)
+    write_study(found, out)
     if not quiet:
         study_report(found, out)
     raise typer.Exit(max(EXIT_CODES.get(kind, 1) for kind in found["verdict_kind"].to_numpy().ravel().tolist()))

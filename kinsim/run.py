@@ -69,6 +69,7 @@ class Run:
         causes: The moment ledger, if it was asked for; see `kinsim.watch.causes`.
         verdict: How it ended.
         wall_time: Seconds spent in the time loop, compiling excluded.
+        awake: Share of the cells, over all steps, that were stepped; the others slept.
     """
 
     scene: Scene
@@ -81,6 +82,7 @@ class Run:
     entries: Mapping[str, Array]
     verdict: Verdict
     wall_time: float
+    awake: float = 1.0
     dumps: Mapping[str, xarray.DataArray] = field(default_factory=dict)
     causes: xarray.Dataset | None = None
 

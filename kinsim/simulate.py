@@ -355,6 +355,7 @@ class Loop:
             scene=self.scene, method=self.method, clock=self.clock, t=np.array(self.times),
             h=np.array([h for h, _ in self.states]), q=np.array([q for _, q in self.states]),
             dt=np.array(self.dts), verdict=verdict, wall_time=wall_time, entries=self.ledger.columns(),
+            awake=self.awake.cell_steps / (self.step * self.h.size) if self.step else 1.0,
             dumps={recorder.dump.name: recorder.result() for recorder in self.recorders},
             causes=self.causes.result() if self.causes else None,
         )  # fmt: skip

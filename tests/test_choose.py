@@ -19,6 +19,7 @@ from kinsim import (
     InputError,
     Kinetic,
     Macroscopic,
+    Profile,
     Scene,
     Uniform,
     advise,
@@ -31,7 +32,8 @@ from kinsim import (
 from kinsim.cli import app
 from kinsim.trades import choose as choosing
 from kinsim.trades.choose import candidates, velocity_error
-from kinsim.trades.pilot import Pilots
+from kinsim.trades.pace import finer
+from kinsim.trades.pilot import Cost, Pilots
 
 SILO, _, _ = load_scene("silo")
 SILO = replace(SILO, cells=replace(SILO.cells, count=80))
@@ -48,22 +50,61 @@ def test_the_velocity_error_is_what_compare_finds() -> None:
 
 
 def test_predictions_are_pilots_times_the_measured_margin() -> None:
-    pilots = Pilots(SILO, Kinetic(), 3.0)
+    """On a third and two thirds of 240 cells, with steps as long beside dx; the margin reaches as far as is left."""
+    scene, clock = replace(SILO, cells=replace(SILO.cells, count=240)), Fixed(0.03, 60)
+    pilots = Pilots(scene, Kinetic(), clock)
     methods = [Kinetic(velocity=Fitted(1)), Kinetic(velocity=Uniform(16)), Kinetic(velocity=Uniform(32))]
     pilots.ask(methods)
     errors = []
-    for count in (20, 40):
-        scene = replace(SILO, cells=replace(SILO.cells, count=count))
-        twin = simulate(scene, Macroscopic(), Courant(0.8, 3.0))
-        clock = Fixed(3.0 / np.ceil(3.0 / twin.dt[:-1].min()), int(np.ceil(3.0 / twin.dt[:-1].min())))
-        errors.append([velocity_error(simulate(scene, method, clock)) for method in methods])
-    quarter, half = np.array(errors)
-    margin = np.exp(1.645 * np.sqrt(np.mean(np.log(half / quarter) ** 2)))
-    assert pilots.margin == pytest.approx(margin, rel=1e-9)
-    np.testing.assert_allclose([pilots.predicted(method) for method in methods], half * margin, rtol=1e-9)
+    for count, steps in ((80, 20), (160, 40)):
+        coarse = replace(scene, cells=replace(scene.cells, count=count))
+        errors.append([velocity_error(simulate(coarse, method, Fixed(1.8 / steps, steps))) for method in methods])
+    less, more = np.array(errors)
+    margin = np.exp(2.353 * np.log2(1.5) * np.sqrt(np.mean(np.log(more / less) ** 2)))
+    assert pilots.margin == pytest.approx(margin, rel=1e-3)  # Student's t with 3 degrees of freedom: 2.353
+    np.testing.assert_allclose([pilots.predicted(method) for method in methods], more * margin, rtol=1e-3)
     assert pilots.foreseen(Kinetic(velocity=Uniform(64))) == 0.0  # two of a kind tell no order
     pilots.ask([Kinetic(velocity=Uniform(64))])
-    assert pilots.foreseen(Kinetic(velocity=Uniform(256))) < pilots.foreseen(Kinetic(velocity=Uniform(128))) < half[2]
+    assert pilots.foreseen(Kinetic(velocity=Uniform(256))) < pilots.foreseen(Kinetic(velocity=Uniform(128))) < more[2]
+
+
+@pytest.mark.parametrize("method", [Kinetic(velocity=Uniform(16)), Kinetic(velocity=Fitted(2), order=2)], ids=repr)
+def test_a_scene_of_few_cells_is_its_own_pilot(method: Kinetic) -> None:
+    """Also with steps far below the bound, and in second order."""
+    clock = Fixed(0.004, 200)
+    told = Pilots(SILO, method, clock).predicted(method)
+    assert told == pytest.approx(velocity_error(simulate(SILO, method, clock)), rel=1e-9)
+
+
+def test_a_heap_given_cell_by_cell_has_pilots() -> None:
+    """Averaged, so that no mass is lost; between cells that do not match, too."""
+    heap = Profile(*((lambda h, q: (h, q / h))(*SILO.initial())))
+    own = replace(SILO, heap=heap)
+    for factor in (0.5, 0.3, 1.7):
+        other = finer(own, factor)
+        for mine, theirs in zip(own.initial(), other.initial(), strict=True):
+            assert theirs.sum() * other.cells.dx == pytest.approx(mine.sum() * own.cells.dx, rel=1e-13, abs=1e-15)
+    pilots = [Pilots(one, Kinetic(), Fixed(0.02, 50)) for one in (own, SILO)]
+    told = [one.predicted(Kinetic(velocity=Uniform(16))) for one in pilots]
+    assert told[0] == pytest.approx(told[1], rel=1e-6)
+
+
+def test_cells_that_sleep_cost_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A dearer step in which most cells sleep is the cheaper one; with a `Courant` clock no cell sleeps."""
+    few, many = Kinetic(velocity=Uniform(16)), Kinetic(velocity=Uniform(32))
+    monkeypatch.setattr(choosing, "seconds_per_step", lambda *_, **__: [Cost(0.1, 1.0), Cost(0.1, 2.0)])
+    monkeypatch.setattr(Pilots, "awake", lambda self, one: 1.0 if one == few or not self._sleeps else 0.2)
+    asked = {"accuracy": 1e-1, "among": [few, many]}
+    assert choose(SILO, Kinetic(), Fixed(0.02, 50), **asked).method == many
+    assert choose(SILO, Kinetic(), Courant(0.8, 1.0), **asked).method == few
+
+
+def test_pilots_see_what_sleeps() -> None:
+    """The share that the run itself has."""
+    pilots, clock = Pilots(SILO, Kinetic(), Fixed(0.02, 400)), Fixed(0.02, 400)
+    for method in (Kinetic(velocity=Fitted(4)), Kinetic(velocity=Uniform(64))):
+        assert pilots.awake(method) == simulate(SILO, method, clock, 1000).awake < 1.0
+    assert Pilots(SILO, Kinetic(), Courant(0.5, 1.0)).awake(Kinetic()) == 1.0
 
 
 @pytest.mark.parametrize(("accuracy", "grid"), [(1e-2, False), (1e-6, False), (1e-11, False), (1e-4, True)])
@@ -79,7 +120,7 @@ def test_the_cheapest_that_will_do_is_taken(monkeypatch: pytest.MonkeyPatch) -> 
     """With costs of our own the choice follows them, whatever the order of the candidates."""
     among = [Kinetic(velocity=Uniform(n)) for n in (256, 16, 64)] + [Kinetic(velocity=Fitted(6))]
     for cost, wanted in (([3, 1, 2, 4], 64), ([3, 1, 4, 2], 6), ([1, 3, 2, 4], 256)):
-        monkeypatch.setattr(choosing, "seconds_per_step", lambda *_, cost=cost, **__: np.array(cost, dtype=float))
+        monkeypatch.setattr(choosing, "seconds_per_step", lambda *_, cost=cost, **__: [Cost(0.0, one) for one in cost])
         chosen = choose(SILO, Kinetic(), CLOCK, accuracy=1e-4, among=among)
         assert chosen.method.velocity.count == wanted
 
@@ -155,6 +196,10 @@ def test_advice_names_what_a_scene_needs() -> None:
     steep = replace(SILO, chute={"zeta": 0.5}, friction=Coulomb(0.1))
     assert needs(steep, 2.0) >= {"friction", "pull of the chute", "every cell in every step"}
     assert "static friction" not in needs(steep, 2.0)
+    assert needs(dry, 1.0) >= {"second order"}  # a dam that breaks
+    assert "second order" not in needs(replace(dry, cells=replace(dry.cells, count=1600)), 1.0)
+    still = replace(SILO, heap=Blocks((), (1.0,)))
+    assert advise(still, Courant(0.4, 1.0)).smeared == 0.0
     told = CliRunner().invoke(app, ["advise", "parabola", "--set", "cells.count=40"])
     assert told.exit_code == 0, told.output
     assert "static friction" in told.stdout

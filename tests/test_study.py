@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 import os
 import signal
@@ -9,6 +10,7 @@ import subprocess
 import sys
 import time
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +18,19 @@ import pytest
 import xarray
 from typer.testing import CliRunner
 
-from kinsim import Courant, Fitted, Fixed, InputError, Kinetic, Macroscopic, Uniform, load_scene, simulate, study
+from kinsim import (
+    Cells,
+    Courant,
+    Fitted,
+    Fixed,
+    InputError,
+    Kinetic,
+    Macroscopic,
+    Uniform,
+    load_scene,
+    simulate,
+    study,
+)  # fmt: skip
 from kinsim.cli import app
 from kinsim.studies import engine, record
 from kinsim.studies.member import Member
@@ -215,3 +229,56 @@ def test_a_worker_killed_in_the_middle_loses_nothing_and_doubles_nothing(
     assert len(saved) == len(set(saved)) == len(list((tmp_path / "kept").iterdir())) == 8
     here = study(SCENE, Macroscopic(), clock, over)
     xarray.testing.assert_identical(*(one.drop_vars(["wall_time", "total_time"]) for one in (found, here)))
+
+
+def test_many_members(tmp_path: Path) -> None:
+    """300 of them: none lost, none twice, each the run that it would be alone; a second study runs nothing."""
+    scene, method = replace(SCENE, cells=Cells(-8, 8, 16)), Macroscopic(4)
+    angles = np.linspace(0.0, 0.3, 300).tolist()
+    found = study(scene, method, Fixed(0.05, 2), {"chute.zeta": angles}, keep=tmp_path)
+    assert len(list(tmp_path.iterdir())) == 300
+    assert (found["verdict_kind"] == "finished").all()
+    for at in (0, 137, 299):
+        alone = simulate(replace(scene, chute={"zeta": angles[at]}), method, Fixed(0.05, 2))
+        np.testing.assert_array_equal(found["h"][at], alone.h[-1])
+    before = {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    again = study(scene, method, Fixed(0.05, 2), {"chute.zeta": angles}, keep=tmp_path, resume=True)
+    assert before == {path: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
+    assert again.equals(found)
+
+
+def test_a_sweep_as_a_table(tmp_path: Path) -> None:
+    """A row per member; other names are refused before anything runs."""
+    words = ["sweep", "silo", "--over", "clock.dt=0.001,0.002", "--set", "clock.steps=3"]
+    words += ["--set", "method.kind=macroscopic", "--quiet", "--out"]
+    done = CliRunner().invoke(app, [*words, str(tmp_path / "x.csv")])
+    assert done.exit_code == 0, done.output
+    rows = list(csv.DictReader((tmp_path / "x.csv").read_text().splitlines()))
+    assert [float(row["clock.dt"]) for row in rows] == [0.001, 0.002]
+    assert {row["verdict_kind"] for row in rows} == {"finished"}
+    assert all(float(row["mass"]) > 0 for row in rows)
+    refused = CliRunner().invoke(app, [*words, str(tmp_path / "x.txt")])
+    assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
+    assert ".nc" in refused.stderr
+
+
+def test_ctrl_c_while_workers_start_waits_for_them(monkeypatch: pytest.MonkeyPatch, capfd: object) -> None:
+    """It reaches them, too, and what they cry then nobody sees; they are stopped, and it is an interrupt."""
+    stopped = []
+
+    class Workers:
+        def __init__(self, **given: object) -> None:
+            os.kill(os.getpid(), signal.SIGINT)
+            os.write(2, b"Traceback (most recent call last):\n")
+
+        def __enter__(self) -> object:
+            return self
+
+        def __exit__(self, *given: object) -> None:
+            stopped.append(True)
+
+    monkeypatch.setattr("distributed.LocalCluster", Workers)
+    with pytest.raises(KeyboardInterrupt):
+        study(SCENE, Macroscopic(), CLOCK, {"chute.zeta": [0.0, 0.1]}, workers=1)
+    assert stopped == [True]
+    assert capfd.readouterr().err == ""

@@ -26,6 +26,7 @@ WORDS = {
     "memory": "most memory taken at once",
     "steps": "steps taken",
     "cell_steps": "cells times steps",
+    "awake": "share of them that was stepped, the others slept",
     "t": "time at the end",
     "mass_drift": "relative change of mass that no inflow accounts for",
     "x": "cell centre along the chute",

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import logging
+import os
+import sys
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ..errors import InputError
+from ..interrupt import Deferred
 from .member import Member
 from .record import Record, failed, perform
 
@@ -71,18 +74,44 @@ class Cluster:
 
     def _client(self, dask: Any, stack: ExitStack) -> Any:
         if self.address is None:
-            at: Any = stack.enter_context(
-                dask.LocalCluster(
-                    n_workers=self.workers, threads_per_worker=1, processes=True, host="127.0.0.1",
-                    dashboard_address=None, env=ONE_THREAD, silence_logs=logging.CRITICAL,
-                )
-            )  # fmt: skip
+            at: Any = self._processes(dask, stack)
         else:
             at = self.address
         try:
             return dask.Client(at, timeout=PATIENCE)
         except (OSError, ValueError, TimeoutError) as error:
             raise InputError(f"--scheduler {self.address}: cannot be reached ({error}); start one there") from None
+
+    def _processes(self, dask: Any, stack: ExitStack) -> Any:
+        """Workers of our own; a Ctrl-C while they start waits until they can be stopped."""
+        with Deferred() as interrupt, _unseen():
+            try:
+                started = stack.enter_context(
+                    dask.LocalCluster(
+                        n_workers=self.workers, threads_per_worker=1, processes=True, host="127.0.0.1",
+                        dashboard_address=None, env=ONE_THREAD, silence_logs=logging.CRITICAL,
+                    )
+                )  # fmt: skip
+            except Exception:
+                if not interrupt.asked:
+                    raise
+        if interrupt.asked:
+            raise KeyboardInterrupt
+        return started
+
+
+@contextmanager
+def _unseen() -> Iterator[None]:
+    """Processes that start in here write nothing to the terminal: Ctrl-C reaches them, too, while they still import."""
+    sys.stderr.flush()
+    kept, nowhere = os.dup(2), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+        os.close(nowhere)
 
 
 def engine(workers: int = 0, scheduler: str | None = None) -> Engine:

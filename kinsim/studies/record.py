@@ -73,7 +73,8 @@ def record_of(run: Run, fields: tuple[str, ...]) -> Record:
         arrays["history_t"] = run.t
     figures = {
         "verdict_kind": run.verdict.kind, "verdict": str(run.verdict),
-        "wall_time": run.wall_time, "steps": run.steps, "cell_steps": run.steps * run.x.size, "t": float(run.t[-1]),
+        "wall_time": run.wall_time, "steps": run.steps, "cell_steps": run.steps * run.x.size,
+        "awake": run.awake, "t": float(run.t[-1]),
         "mass_drift": run.mass_drift, **{name: _total(name, column) for name, column in run.entries.items()},
     }  # fmt: skip
     return Record(figures, arrays)

@@ -130,7 +130,7 @@ def _advice(
         return ""
     kind = "fitted nodes" if isinstance(method.velocity, Fitted) else "nodes"
     same = sorted({method, *(one for one in candidates(method) if kind_of(one) == kind_of(method))}, key=nodes)
-    pilots = Pilots(scene, method, end_of(clock), **options)
+    pilots = Pilots(scene, method, clock, **options)
     pilots.ask(same[:3])
     below = f"less than {_percent(ENOUGH)}"
     good = velocity <= ENOUGH * dx
@@ -139,8 +139,9 @@ def _advice(
         return f"No number of {kind} up to {nodes(same[-1])} makes them {below}."
     if enough == method:
         return f"Fewer {kind} would not do for {below}."
-    cost = dict(zip(same, seconds_per_step(scene, same, **options).tolist(), strict=True))
-    return f"{nodes(enough)} {kind} would do for {below}, {_faster(cost[method] / cost[enough])}."
+    cost = dict(zip(same, seconds_per_step(scene, same, **options), strict=True))
+    mine, theirs = (cost[one].of(pilots.awake(one)) for one in (method, enough))
+    return f"{nodes(enough)} {kind} would do for {below}, {_faster(mine / theirs)}."
 
 
 def _bounded(method: Kinetic, pilots: Pilots, error: float) -> bool:

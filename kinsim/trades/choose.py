@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,8 +19,7 @@ from ..scene import Scene
 from ..simulate import simulate
 from ..studies.member import ONCE
 from .judge import mass_of
-from .pace import end_of
-from .pilot import Pilots, kind_of, nodes, seconds_per_step
+from .pilot import Cost, Pilots, kind_of, nodes, seconds_per_step
 
 FITTED = (1, 2, 3, 4, 6, 8)
 COUNTS = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512)
@@ -36,7 +35,7 @@ class Chosen:
         method: The method.
         accuracy: What was asked.
         predicted: Its velocity error, at most: L1(h) to the closed-form twin at the end, over the mass at the start.
-        share: Its cost per step over that of the dearest candidate.
+        share: Its cost per step over that of the dearest candidate, in which no cell sleeps.
         why: A sentence.
     """
 
@@ -70,8 +69,9 @@ def choose(
 ) -> Chosen:
     """Pick velocity nodes for a scene: the cheapest whose velocity error is predicted to stay below `accuracy`.
 
-    Costs are measured on the scene, errors on half and a quarter of its cells (see `kinsim.trades.pilot`), from the
-    cheapest candidate on, until one will do. Candidates that the measured order of their kind rules out are left out.
+    Costs of a step are timed on the scene; errors, and the share of the cells that sleep with a clock of one dt, are
+    measured on pilots with fewer cells (see `kinsim.trades.pilot`), from the cheapest candidate on, until no other can
+    be cheaper. Candidates that the measured order of their kind rules out are left out.
 
     Args:
         scene: What happens.
@@ -98,22 +98,20 @@ def choose(
     rest = list(among) if among is not None else candidates(method, grid)
     if not rest:
         raise InputError("choose: there are no candidates; give at least one")
-    pilots = Pilots(scene, method, end_of(clock), **options)
-    cost = seconds_per_step(scene, rest, **options)
-    rest = [rest[at] for at in np.argsort(cost)]
-    cost = np.sort(cost)
+    pilots = Pilots(scene, method, clock, **options)
+    costs = dict(zip(rest, seconds_per_step(scene, rest, **options), strict=True))
+    dearest = max(cost.of(1.0) for cost in costs.values())
+    rest.sort(key=lambda one: costs[one].of(1.0))
     pilots.ask(rest[:FEWEST])
-    found = _first(rest, pilots, accuracy)
-    if found is not None:
-        one, why = rest[found], _why(rest[found], accuracy, pilots, found, len(rest))
-        return Chosen(one, accuracy, pilots.predicted(one), float(cost[found] / np.nanmax(cost)), why)
-    most = {kind_of(one): one for one in sorted(rest, key=nodes)}
-    error, one = min(((pilots.predicted(one), one) for one in most.values()), key=lambda pair: pair[0])
-    if error <= accuracy:  # the kind was given up too early
-        at = rest.index(one)
-        return Chosen(
-            one, accuracy, error, float(cost[at] / np.nanmax(cost)), _why(one, accuracy, pilots, at, len(rest))
-        )
+    best = _cheapest(rest, costs, pilots, accuracy)
+    if best is None:
+        most = {kind_of(one): one for one in sorted(rest, key=nodes)}  # a kind may have been given up too early
+        best = min(most.values(), key=pilots.predicted)
+    error = pilots.predicted(best)
+    if error <= accuracy:
+        share, own = costs[best].of(pilots.awake(best)), pilots.awake(best)
+        cheaper = sum(costs[one].of(pilots.least_awake) < share and not pilots.keeps(one, accuracy) for one in rest)
+        return Chosen(best, accuracy, error, share / dearest, _why(best, accuracy, pilots, cheaper, len(rest), own))
     if not math.isfinite(error):
         raise InputError("choose: no pilot run came to its end; take a scene and a method that do")
     if error > 1.0:
@@ -122,18 +120,39 @@ def choose(
         )
     raise InputError(
         f"choose: a velocity error below {accuracy:.3g} cannot be had; the nearest is {error:.2g}, "
-        f"with {one.velocity.words}: ask for {_up(error):.2g}"
+        f"with {best.velocity.words}: ask for {_up(error):.2g}"
     )
 
 
-def _first(ordered: Sequence[Kinetic], pilots: Pilots, accuracy: float) -> int | None:
-    """The place of the first that will do; one that was passed over is looked at where the next of its kind will."""
-    for at, one in enumerate(ordered):
-        if pilots.foreseen(one) <= accuracy and pilots.predicted(one) <= accuracy:
-            while at and pilots.predicted(ordered[at - 1]) <= accuracy:
-                at -= 1
-            return at
-    return None
+def _cheapest(
+    ordered: Sequence[Kinetic], costs: Mapping[Kinetic, Cost], pilots: Pilots, accuracy: float
+) -> Kinetic | None:
+    """The one of least cost that will do; `ordered` by the cost of a step in which no cell sleeps.
+
+    What would be dearer even if as many of its cells slept as ever did is left out, and so is at first what the order
+    of its kind rules out; where a dearer one will do, that is looked at after all.
+    """
+    best, passed = None, []
+
+    def cost(one: Kinetic) -> float:
+        return costs[one].of(pilots.awake(one))
+
+    def better(one: Kinetic) -> bool:
+        if best is not None and costs[one].of(pilots.least_awake) >= cost(best):
+            return False
+        return pilots.predicted(one) <= accuracy and (best is None or cost(one) < cost(best))
+
+    for one in ordered:
+        if best is None and pilots.foreseen(one) > accuracy:
+            passed.append(one)
+        elif better(one):
+            best = one
+    for one in reversed(passed if best is not None else []):
+        if better(one):
+            best = one
+        elif pilots.predicted(one) > accuracy:
+            break
+    return best
 
 
 def _up(error: float) -> float:
@@ -142,10 +161,11 @@ def _up(error: float) -> float:
     return math.ceil(error / digit * (1.0 - 1e-12)) * digit
 
 
-def _why(method: Kinetic, accuracy: float, pilots: Pilots, cheaper: int, of: int) -> str:
+def _why(method: Kinetic, accuracy: float, pilots: Pilots, cheaper: int, of: int, awake: float) -> str:
     before = f"the {cheaper} cheaper ones of {of} would miss it" if cheaper else f"the cheapest of {of} candidates"
     predicted = f"predicted {pilots.predicted(method):.2g} <= {accuracy:.2g}, a margin of {pilots.margin:.2g} included"
-    return f"{method_name(method)}: {predicted}; {before}"
+    sleeping = f"; {100.0 * awake:.0f} percent of its cells are awake" if awake < 0.995 else ""
+    return f"{method_name(method)}: {predicted}; {before}{sleeping}"
 
 
 def velocity_error(run: Run) -> float:

@@ -14,7 +14,7 @@ from ..method import Macroscopic
 from ..model.cells import Cells
 from ..scene import Scene
 from ..studies.study import study
-from .pace import finer, steady
+from .pace import finer, steady, varied
 
 FINER = 4
 """The reference has so many times the cells of the finest method that it judges."""
@@ -57,7 +57,7 @@ def judge(scene: Scene, end: float, finest: float, **options: Any) -> Judge:
             pass
     scenes = [finer(scene, finest * factor) for factor in (FINER // 2, FINER)]
     over: dict[str, list[Any]] = {
-        "cells.count": [one.cells.count for one in scenes],
+        **varied(scenes),
         "clock": [steady(one, SECOND, COURANT, end) for one in scenes],
     }
     found = study(scene, SECOND, over["clock"][0], over, paired=True, **options)

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
+
+import numpy as np
 
 from ..clock import Courant, Fixed
 from ..errors import InputError
 from ..method import Kinetic, Macroscopic
+from ..model.cells import Cells
+from ..model.heap import Profile
 from ..scene import Scene
 from ..simulate import simulate
 from ..stepper import largest_courant
@@ -25,9 +31,45 @@ def twin_of(method: Kinetic | Macroscopic) -> Macroscopic:
 
 
 def finer(scene: Scene, factor: float) -> Scene:
-    """The scene on `factor` times as many cells, at least 2."""
+    """The scene on `factor` times as many cells, at least 2; a heap that is given cell by cell is averaged."""
     count = max(2, round(scene.cells.count * factor))
-    return scene if count == scene.cells.count else replace(scene, cells=replace(scene.cells, count=count))
+    if count == scene.cells.count:
+        return scene
+    cells = replace(scene.cells, count=count)
+    if not isinstance(scene.heap, Profile):
+        return replace(scene, cells=cells)
+    return replace(scene, cells=cells, heap=_averaged(scene, cells))
+
+
+def varied(scenes: Sequence[Scene]) -> dict[str, list[Any]]:
+    """What scenes that `finer` made differ in, as the lists of a paired study."""
+    over: dict[str, list[Any]] = {"cells.count": [one.cells.count for one in scenes]}
+    if any(isinstance(one.heap, Profile) for one in scenes):
+        over["heap"] = [one.heap for one in scenes]
+    return over
+
+
+def at_pace(scene: Scene, method: Kinetic | Macroscopic, clock: Fixed | Courant, level: float) -> Fixed:
+    """Steps of one length for the scene on `level` times its cells, as long beside dx as those of the clock.
+
+    Raises:
+        InputError: The closed form does not come to the end.
+    """
+    if isinstance(clock, Courant):
+        return steady(finer(scene, level), method, clock.number, clock.end)
+    steps = max(1, round(clock.steps * finer(scene, level).cells.count / scene.cells.count))
+    return Fixed(end_of(clock) / steps, steps)
+
+
+def _averaged(scene: Scene, cells: Cells) -> Profile:
+    """Mass and momentum of the scene's own cells, as averages over others."""
+    edges, wanted = (np.linspace(one.left, one.right, one.count + 1) for one in (scene.cells, cells))
+    h, q = (
+        np.maximum(np.diff(np.interp(wanted, edges, np.concatenate([[0.0], np.cumsum(part)]))), least)
+        * (scene.cells.dx / cells.dx)
+        for part, least in zip(scene.initial(), (0.0, -np.inf), strict=True)
+    )
+    return Profile(h, np.divide(q, h, out=np.zeros_like(q), where=h > 0.0))
 
 
 def steady(scene: Scene, method: Kinetic | Macroscopic, number: float, end: float) -> Fixed:

@@ -20,7 +20,7 @@ from ..studies.study import study
 from .family import Choice, chosen
 from .front import knee, pareto
 from .judge import Judge, judge, mass_of
-from .pace import end_of, finer, steady, twin_of
+from .pace import end_of, finer, steady, twin_of, varied
 
 if TYPE_CHECKING:
     import xarray
@@ -97,13 +97,14 @@ def trade(
 
 def _over(scene: Scene, family: Sequence[Choice], end: float, paces: dict[Any, Fixed]) -> dict[str, list[Any]]:
     """The lists of a paired study."""
-    counts = [finer(scene, one.cells).cells.count for one in family]
+    scenes = [finer(scene, one.cells) for one in family]
+    counts = [one.cells.count for one in scenes]
     for one, count in zip(family, counts, strict=True):
         asked = (twin_of(one.method), count, one.courant)
         if asked not in paces:
             paces[asked] = steady(finer(scene, one.cells), one.method, one.courant, end)
     clocks = [paces[twin_of(one.method), count, one.courant] for one, count in zip(family, counts, strict=True)]
-    return {"method": [one.method for one in family], "cells.count": counts, "clock": clocks}
+    return {"method": [one.method for one in family], **varied(scenes), "clock": clocks}
 
 
 def _measured(
