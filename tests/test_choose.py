@@ -94,9 +94,20 @@ def test_cells_that_sleep_cost_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     few, many = Kinetic(velocity=Uniform(16)), Kinetic(velocity=Uniform(32))
     monkeypatch.setattr(choosing, "seconds_per_step", lambda *_, **__: [Cost(0.1, 1.0), Cost(0.1, 2.0)])
     monkeypatch.setattr(Pilots, "awake", lambda self, one: 1.0 if one == few or not self._sleeps else 0.2)
+    monkeypatch.setattr(Pilots, "least_awake", property(lambda self: 0.2 if self._sleeps else 1.0))
     asked = {"accuracy": 1e-1, "among": [few, many]}
     assert choose(SILO, Kinetic(), Fixed(0.02, 50), **asked).method == many
     assert choose(SILO, Kinetic(), Courant(0.8, 1.0), **asked).method == few
+
+
+def test_nodes_that_come_to_rest_are_taken_before_few_that_do_not() -> None:
+    """16 nodes never rest on this incline, 24 do: a dearer step, and a much cheaper run."""
+    scene, _, _ = load_scene("silo-incline")
+    scene = replace(scene, cells=replace(scene.cells, count=160))
+    among, clock = [Kinetic(velocity=Uniform(n)) for n in (16, 24)], Fixed(0.04, 200)
+    awake = [simulate(scene, one, clock, 1000).awake for one in among]
+    assert awake[1] < 0.5 * awake[0]
+    assert choose(scene, Kinetic(), clock, accuracy=1e-2, among=among).method == among[1]
 
 
 def test_pilots_see_what_sleeps() -> None:

@@ -72,7 +72,8 @@ class Pilots:
         self._found: dict[Kinetic, Array] = {}
         self._awake: dict[Kinetic, float] = {}
         self._scene, self._twin = scene, method.twin
-        self._closed = self._run([method.twin])[0][:, 0]
+        closed, awake = self._run([method.twin])
+        self._closed, self._of_twin = closed[:, 0], float(awake[-1, 0])
 
     def ask(self, methods: Sequence[Kinetic]) -> None:
         """Run the pilots of `methods` that were not run before."""
@@ -136,8 +137,9 @@ class Pilots:
 
     @property
     def least_awake(self) -> float:
-        """The least share of all pilots so far."""
-        return min(map(self.awake, self._awake), default=1.0)
+        """The least share of all pilots so far, and of their twin, which nodes do not keep awake."""
+        known = [share for share in (*self._awake.values(), self._of_twin) if math.isfinite(share)]
+        return min(known, default=1.0) if self._sleeps else 1.0
 
     def foreseen(self, method: Kinetic) -> float:
         """About what `predicted` will be, from the order of pilots of the same kind; 0 where there are too few."""
