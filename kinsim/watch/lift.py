@@ -72,7 +72,8 @@ class Lift(Grounded):
         return self._strict
 
     def row(self) -> dict[str, float]:
-        row = dict(zip(LIFT_COLUMNS, (self._most, self._from, self._to, self._since, self._least), strict=True))
+        least = self._least if self._least < math.inf else float(np.min(self._ground.cos))  # of a mass at rest
+        row = dict(zip(LIFT_COLUMNS, (self._most, self._from, self._to, self._since, least), strict=True))
         self._most = 0
         return row
 
