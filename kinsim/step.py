@@ -105,7 +105,7 @@ def step(scene: Scene, method: Kinetic | Macroscopic, h: Array, q: Array, dt: fl
     return Step(
         dt=dt, h=now.h[1:-1], u=now.u[1:-1], upwind=now.upwind, balanced=now.balanced if scheme.has_faces else None,
         states=states,
-        half=stepper.wing.half_moments(now)[:, 1:-1], flux=np.array([now.F1, now.F2]),
+        half=stepper.wing.half_moments(now)[:, 1:-1].copy(), flux=np.array([now.F1, now.F2]),
         balanced_flux=np.array([now.B1, now.B2]) if scheme.uses_balanced else None,
         slow=now.slow[1:-1], h1=now.h1, q1=now.q1, qhat=now.qhat, impulse=now.J,
         xi=density.xi if density else None, M=density.M[1:-1] if density else None,

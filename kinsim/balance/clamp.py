@@ -35,6 +35,13 @@ def below_nothing(h1: Array) -> float:
 
 
 @kernel
+def within(h: Array, h1: Array, pulled: Array) -> None:
+    """h, but at least half and at most twice h1; all of shape (nx,)."""
+    for i in range(h.size):
+        pulled[i] = min(max(h[i], 0.5 * h1[i]), 2.0 * h1[i])
+
+
+@kernel
 def clip_velocity(low: Array, high: Array, h1: Array, qhat: Array) -> None:
     """Keep qhat/h^{n+1} among the particles that could come: those of the cells i - 1, i and i + 1.
 

@@ -13,7 +13,7 @@ import numpy as np
 from ..model.boundary import ends, extend_shown
 from ..model.ground import OfCells, OfFaces
 from ..scene import Scene
-from .clamp import below_nothing, clamped, clip_velocity
+from .clamp import below_nothing, clamped, clip_velocity, within
 from .hold import hold_back, judge_faces, rest_flux
 from .reflect import find_static, reflected, stopped
 from .slopes import reconstruct
@@ -69,6 +69,7 @@ class HeldSloped(Held):
     def __init__(self, scene: Scene, limiter: Limiter) -> None:
         super().__init__(scene)
         self._steepest = STEEPEST[limiter]
+        self._pulled = np.zeros(scene.cells.count)
 
     def prepare(self, now: Stages, fastest: float) -> None:
         super().prepare(now, fastest)
@@ -78,7 +79,8 @@ class HeldSloped(Held):
 
     def impulse(self, now: Stages, pulled: Array, dt: float) -> float:
         """The impulse of a stage acts on h^n, at least half and at most twice h^{n+1}."""
-        return super().impulse(now, np.clip(now.h[1:-1], 0.5 * now.h1, 2.0 * now.h1), dt)
+        within(now.h[1:-1], now.h1, self._pulled)
+        return super().impulse(now, self._pulled, dt)
 
 
 class Reflecting(Held):

@@ -66,6 +66,10 @@ class Scheme2(Scheme1):
 
     uses_balanced = has_faces = True
 
+    def __init__(self, scene: Scene) -> None:
+        super().__init__(scene)
+        self._taken = Walls(*np.zeros((4, scene.cells.count)))
+
     def fluxes(self, now: Stages, wing: Wing, dt: float) -> Walls:
         s, R, _, dx = self._ground
         to = now.balanced
@@ -76,9 +80,8 @@ class Scheme2(Scheme1):
         find_slow(now.q, now.h1_candidate, s, R, dt, now.slow[1:-1])
         extend_flag(self._boundary, now.slow)
         self.choose(now)
-        F, B = Walls.of(now.F1, now.F2), Walls.of(now.B1, now.B2)
-        at = (now.at_left, now.at_left, now.at_right, now.at_right)
-        return Walls(*(np.where(flag, b, f) for flag, b, f in zip(at, B, F, strict=True)))
+        choose_flux(now.at_left, now.at_right, now.F1, now.F2, now.B1, now.B2, *self._taken)
+        return self._taken
 
     def choose(self, now: Stages) -> None:
         """Write `at_left` and `at_right`: where cells take the balanced flux."""
@@ -108,6 +111,17 @@ def flat(scene: Scene) -> Flat:
     """The ground of schemes that are made for a constant slope."""
     assert isinstance(scene.ground, Flat)
     return scene.ground
+
+
+@kernel
+def choose_flux(
+    at_left: Flags, at_right: Flags, F1: Array, F2: Array, B1: Array, B2: Array,
+    left1: Array, left2: Array, right1: Array, right2: Array,
+) -> None:  # fmt: skip
+    """The fluxes of each cell at its walls: B where the flags say so, else F, each of shape (nx + 1,)."""
+    for i in range(left1.size):
+        left1[i], left2[i] = (B1[i], B2[i]) if at_left[i] else (F1[i], F2[i])
+        right1[i], right2[i] = (B1[i + 1], B2[i + 1]) if at_right[i] else (F1[i + 1], F2[i + 1])
 
 
 @kernel

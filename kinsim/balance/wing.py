@@ -49,6 +49,7 @@ class WithoutDensity(ABC):
     def __init__(self, scene: Scene, sloped: bool) -> None:
         self._beta = scene.ground.shown(sloped)
         self._room = np.empty((5, scene.cells.count + 2))
+        self._half = np.empty((4, scene.cells.count + 2))
 
     def equilibrium(self, now: Stages) -> float:
         """M is known without being formed; its fastest particle is |u| + c."""
@@ -58,7 +59,7 @@ class WithoutDensity(ABC):
         """u -+ c of what the cells show."""
         support(*now.plus, self._beta.plus, now.low, now.high)
         if now.plus is not now.minus:
-            low, high = np.empty_like(now.low), np.empty_like(now.high)
+            low, high = self._half[:2]
             support(*now.minus, self._beta.minus, low, high)
             np.minimum(now.low, low, out=now.low)
             np.maximum(now.high, high, out=now.high)

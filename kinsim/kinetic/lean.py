@@ -66,7 +66,7 @@ class OnDemand(Density):
         """The outermost occupied nodes of each cell are known with the sums."""
 
     def half_moments(self, now: Stages) -> Array:
-        return self._sums.copy()
+        return self._sums
 
     def upwind_flux(self, now: Stages) -> None:
         add_sides(self._sums, now.F1, now.F2)
@@ -117,8 +117,7 @@ class OnDemand(Density):
     def B(self) -> Array:
         B = self._place("B", self._nx + 1 if self._scheme.has_faces else 0)
         if "B" not in self._made and B.size:
-            where = np.flatnonzero(self._now.held)
-            B[where] = self._held_rows(self._now, where, self._before(), 1.0, Status.empty(where.size))
+            self._fill_held(self._now, self._at_held, self._before(), 1.0, np.empty_like(B), B)
         self._made.add("B")
         return B
 

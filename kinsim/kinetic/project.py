@@ -40,7 +40,7 @@ class Resummed:
     def after_force(self, now: Stages, density: Density | None) -> float:
         made = self._sum(density, "f", now.h1, now.q1)
         if density is not None:
-            np.add(now.q1, density.offset * now.h1, out=now.q1)
+            density.add_moved(now.h1, now.q1)
         return made
 
     def _sum(self, density: Density | None, stage: str, h: Array, q: Array) -> float:

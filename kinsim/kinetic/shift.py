@@ -17,8 +17,7 @@ class ShiftExact:
 
     def __call__(self, f: Array, M: Array, J: Array, h: Array, dxi: float, out: Array, offset: Array) -> float:
         out[:] = f
-        np.divide(J, h, out=offset, where=h > 0.0)
-        offset[~(h > 0.0)] = 0.0
+        way(J, h, offset)
         return 0.0
 
 
@@ -43,6 +42,13 @@ class ShiftPFC:
 
     def __call__(self, f: Array, M: Array, J: Array, h: Array, dxi: float, out: Array, offset: Array) -> float:
         return shift_pfc(f, J, h, dxi, out)
+
+
+@kernel
+def way(J: Array, h: Array, offset: Array) -> None:
+    """J/h, 0 where it is dry."""
+    for i in range(J.size):
+        offset[i] = J[i] / h[i] if h[i] > 0.0 else 0.0
 
 
 @kernel_inner

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..balance.interface import Faces
 from ..balance.schemes import Scheme
@@ -15,7 +14,8 @@ from ..scene import Scene
 from .equilibrium import Equilibrium, Status
 from .equilibrium.averages import mass_outside
 from .force import Force
-from .transport import add_sides, half_sums, occupied, outermost, transport, transport_reflecting
+from .held import HeldFaces, put_capped, put_flux
+from .transport import add_sides, half_sums, occupied, outermost, sum_rows, transport, transport_reflecting
 from .velocity import Grid, Uniform, Window
 
 
@@ -51,6 +51,7 @@ class Density:
         self.status = Status.empty(nx + 2)
         self.face_status = Status.empty(nx + 1)
         self._sums = np.zeros((4, nx + 2))
+        self._at_held = HeldFaces(nx + 1, self._shown.faces)
         self.reach = 0.0
         self.lost = 0.0
         self._pull = scene.cells.dx * float(np.max(np.abs(scene.ground.pull) + scene.ground.hold))  # >= dx |g|
@@ -66,7 +67,8 @@ class Density:
         self._M = np.zeros((nx + 2, n))
         self._B = np.zeros((nx + 1 if self._scheme.has_faces else 0, n))
         self._minus = np.zeros((nx + 2, n)) if self._scheme.sloped else self._M
-        self._transported = np.zeros((nx, n))
+        self._spare = np.zeros((nx + 1, n))  # held rows, before transport writes what is carried
+        self._transported = self._spare[:-1]
         self._f = np.zeros((nx, n)) if self._forced else self._transported
 
     def _see_room(self, grid: Grid) -> None:
@@ -123,16 +125,17 @@ class Density:
         half = self.grid.half
         self.fill(*now.minus, *now.minus, self._shown.minus, self._minus, self.status)
         self.B[:, half:], self.B[:, :half] = self.M[:-1, half:], self._minus[1:, :half]
-        np.multiply(0.5, self.M + self._minus, out=self.M)
+        np.add(self.M, self._minus, out=self.M)
+        np.multiply(0.5, self.M, out=self.M)
 
     def support(self, now: Stages) -> None:
         """The outermost occupied nodes of each cell."""
         occupied(self.M, self.grid.dxi, now.low, now.high)
 
     def half_moments(self, now: Stages) -> Array:
-        """The half-range sums of M in each ghosted cell, shape (4, nx + 2)."""
+        """The half-range sums of M in each ghosted cell, shape (4, nx + 2), until they are asked for again."""
         half_sums(self.M, self._w1, self._w2, *self._sums)
-        return self._sums.copy()
+        return self._sums
 
     def upwind_flux(self, now: Stages) -> None:
         """F: the half-range sums of M, xi > 0 from the left cell and xi < 0 from the right one, (19)."""
@@ -150,33 +153,29 @@ class Density:
 
     def held_flux(self, now: Stages) -> None:
         """The one flux of scheme 4: sums of the cells' densities, and of a density of their own at held faces."""
-        sloped = self._scheme.sloped
-        now.at_left[:], now.at_right[:] = now.held[:-1] | sloped, now.held[1:] | sloped
+        sloped, held = self._scheme.sloped, self._at_held
+        np.logical_or(now.held[:-1], sloped, out=now.at_left)
+        np.logical_or(now.held[1:], sloped, out=now.at_right)
         if not sloped:
             self.upwind_flux(now)
-        where = np.flatnonzero(now.held)
-        status = Status.empty(where.size)
-        if where.size:
-            self.B[where] = self._held_rows(now, where, self.M, 2.0 if sloped else 1.0, status)
-        self.face_status.put(where, status)
-        chosen = slice(None) if sloped else where
-        P1, P2, N1, N2 = np.empty((4, now.held[chosen].size))
-        half_sums(self.B[chosen], self._w1, self._w2, P1, P2, N1, N2)
-        now.F1[chosen], now.F2[chosen] = P1 + N1, P2 + N2
+        self._fill_held(now, held, self.M, 2.0 if sloped else 1.0, self._spare, self.B)
+        self.face_status.put(held.where[: held.count], held.status)
+        if sloped:
+            sums = self._sums[:, :-1]
+            half_sums(self.B, self._w1, self._w2, *sums)
+            np.add(sums[0], sums[2], out=now.F1)
+            np.add(sums[1], sums[3], out=now.F2)
+        else:
+            half_sums(self._spare[: held.count], self._w1, self._w2, *self._sums[:, : held.count])
+            put_flux(self._sums, held.where, held.count, now.F1, now.F2)
 
-    def _held_rows(self, now: Stages, where: NDArray[np.intp], M: Array, share: float, status: Status) -> Array:
-        """Densities at the held faces `where`; no face sends more than `share` times what stands before it in M."""
-        half, at = self.grid.half, now.balanced
-        rows = np.empty((where.size, self.grid.count))
-        beta = self._shown.faces
-        if isinstance(beta, tuple):
-            beta = beta[0][where], beta[1][where]
-        states = (at.h_left, at.u_left, at.h_right, at.u_right)
-        h_left, u_left, h_right, u_right = (state[where] for state in states)
-        self.fill(h_left, u_left, h_right, u_right, beta, rows, status)
-        np.minimum(rows[:, half:], share * M[where, half:], out=rows[:, half:])
-        np.minimum(rows[:, :half], share * M[where + 1, :half], out=rows[:, :half])
-        return rows
+    def _fill_held(self, now: Stages, held: HeldFaces, M: Array, share: float, rows: Array, B: Array) -> None:
+        """Write the rows of B at held faces; no face sends more than `share` times what stands before it in M."""
+        held.pack(now)
+        rows = rows[: held.count]
+        if held.count:
+            self.fill(*held.states, held.beta, rows, held.status)
+        put_capped(rows, held.where, M, share, B)
 
     def transport(self, now: Stages, lam: float) -> None:
         """f = M - lam xi (M_{i+1/2} - M_{i-1/2}), (23) before the shift; a window makes room for the shift."""
@@ -212,9 +211,11 @@ class Density:
 
     def average(self, M: Array) -> None:
         """Mean of what a second stage made of f and of M, the density from which the first one started."""
-        np.multiply(0.5, M + self.f, out=self.f)
+        np.add(M, self.f, out=self.f)
+        np.multiply(0.5, self.f, out=self.f)
         if self.f is not self.transported:
-            np.multiply(0.5, M + self.transported, out=self.transported)
+            np.add(M, self.transported, out=self.transported)
+            np.multiply(0.5, self.transported, out=self.transported)
 
     def cut(self, now: Stages) -> float:
         """The mass of M outside the window, per dx."""
@@ -243,10 +244,11 @@ class Density:
         """Write rows of the equilibrium, xi > 0 from the left states and xi < 0 from the right ones."""
         self._equilibrium.fill(h_left, u_left, h_right, u_right, beta, self.grid, rows, status)
 
+    def add_moved(self, h: Array, q: Array) -> None:
+        """Add to q the momentum of nodes that the force has moved."""
+        if self.offset.any():
+            np.add(q, self.offset * h, out=q)
+
     def sums(self, f: Array, mass: Array, momentum: Array) -> None:
         """Sums of f and xi f over the nodes, (20), into arrays of shape (nx,)."""
-        half = self.grid.half
-        positive, negative = f[:, half:], f[:, half - 1 :: -1]
-        dxi, side = self.grid.dxi, self.grid.side
-        np.multiply((positive + negative).sum(axis=1), dxi, out=mass)
-        np.multiply(((positive - negative) * side).sum(axis=1), dxi, out=momentum)
+        sum_rows(f, self.grid.side, self.grid.dxi, mass, momentum)

@@ -23,7 +23,7 @@ class FrictionLaw(Protocol):
     """A law of friction."""
 
     def resistance(self, chute: Pressed) -> Local:
-        """R of Definition 1 (dimensionless)."""
+        """R of Definition 1 (dimensionless), in proportion to the normal force."""
 
 
 @value

@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..kernel import kernel
 from ..local import Local, Sides
 from .boundary import Boundary, Inflow, ends
 from .cells import Cells
@@ -97,16 +98,18 @@ class Smooth:
     """A chute of varying slope; cells have shape (nx,), ghosted ones (nx + 2,), faces (nx + 1,).
 
     Attributes:
-        law: The law of friction.
+        grip: Friction over normal force, tan delta.
         pull, cos, bend: sin zeta, cos zeta, and eta kappa of cells.
         hold: What friction can hold of resting cells.
         ghosted: beta of ghosted cells; a ghost has that of the cell it shows, or makes that of a stream
             right at its face.
         pull_face, hold_face, beta_face: The same of faces.
+        most: Room for the most friction of a step.
+        bends: Whether there is friction of the bend.
         dx: Length of a cell.
     """
 
-    law: FrictionLaw
+    grip: float
     pull: Array
     cos: Array
     bend: Array
@@ -115,6 +118,8 @@ class Smooth:
     pull_face: Array
     hold_face: Array
     beta_face: Array
+    most: Array
+    bends: bool
     dx: float
 
     @classmethod
@@ -130,10 +135,11 @@ class Smooth:
         for at, end in zip((0, -1), ends(boundary), strict=True):
             if isinstance(end, Inflow):
                 ghosted[at] = max(2.0 * scale * math.cos(face[at]) - ghosted[at], 0.0)
+        grip = float(law.resistance(Incline(1.0)))
         return cls(
-            law, np.sin(zeta), cos, -chute.eta * rise, np.asarray(law.resistance(Incline(cos))), ghosted,
-            np.sin(face), np.asarray(law.resistance(Incline(np.cos(face)))), 0.5 * (ghosted[:-1] + ghosted[1:]),
-            cells.dx,
+            grip, np.sin(zeta), cos, -chute.eta * rise, grip * cos, ghosted,
+            np.sin(face), grip * np.cos(face), 0.5 * (ghosted[:-1] + ghosted[1:]),
+            np.zeros_like(cos), bool(np.any(chute.eta * rise)), cells.dx,
         )  # fmt: skip
 
     @property
@@ -154,11 +160,10 @@ class Smooth:
         the share a = dt tan(delta) eta kappa |u| of the momentum, and where a > 1/2 the share 1 - 1/(4 a), so that it
         leaves something at any dt and eta.
         """
-        press = self.bend * u * u
-        a = dt * self.law.resistance(Incline(np.maximum(self.bend, 0.0) * np.abs(u)))
-        share = np.where(a > 0.5, (1.0 - 0.25 / np.maximum(a, 0.5)) / np.maximum(a, 0.5), 1.0)
-        normal = np.maximum(self.cos + press * share, 0.0)
-        return self.pull, self.law.resistance(Incline(normal)), self.beta, self.dx
+        if not self.bends:
+            return self.pull, self.hold, self.beta, self.dx
+        brake(u, dt, self.grip, self.cos, self.bend, self.most)
+        return self.pull, self.most, self.beta, self.dx
 
     def shown(self, sloped: bool) -> Shown:
         """beta of what cells show: in first order that of the cell, in second order that of the face."""
@@ -180,8 +185,17 @@ class Smooth:
         return replace(
             self, pull=self.pull[here], cos=self.cos[here], bend=self.bend[here], hold=self.hold[here],
             ghosted=self.ghosted[around], pull_face=self.pull_face[faces], hold_face=self.hold_face[faces],
-            beta_face=self.beta_face[faces],
+            beta_face=self.beta_face[faces], most=self.most[here].copy(),
         )  # fmt: skip
 
 
 Ground = Flat | Smooth
+
+
+@kernel
+def brake(u: Array, dt: float, grip: float, cos: Array, bend: Array, most: Array) -> None:
+    """The most friction that a step of dt can bring to bear; see `Smooth.cells`."""
+    for i in range(u.size):
+        a = dt * grip * max(bend[i], 0.0) * abs(u[i])
+        share = (1.0 - 0.25 / a) / a if a > 0.5 else 1.0
+        most[i] = grip * max(cos[i] + bend[i] * u[i] * u[i] * share, 0.0)
