@@ -4,10 +4,11 @@ PYTHON ?= python3
 BIN := .venv/bin
 SHELL := /bin/sh
 
-.PHONY: help demo docs test check bench trade clean
+.PHONY: help demo lab docs test check bench trade clean
 
 help:
 	@echo "make demo    install, run the silo with both wings, write out/silo.nc and out/silo.png"
+	@echo "make lab     install, open a page in the browser on which the density moves"
 	@echo "make docs    install, run the tutorials, build the documentation into out/docs, which needs no network to be read"
 	@echo "make test    install, lint, type-check, run all tests"
 	@echo "make bench   install, measure speed and memory against the targets, write out/benchmarks.json"
@@ -24,6 +25,9 @@ demo: .venv/installed
 	@mkdir -p out
 	$(BIN)/kinsim run silo --out out/silo.nc --plot out/silo.png
 	$(BIN)/kinsim compare silo
+
+lab: .venv/installed
+	$(BIN)/kinsim lab
 
 .venv/docs: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
@@ -42,6 +46,7 @@ check: .venv/installed
 
 test: check
 	$(BIN)/pytest --quiet --numprocesses 2
+	$(BIN)/python .ci/browser.py tests/lab_in_browser.py
 
 bench: .venv/installed
 	$(BIN)/python benchmarks/run.py

@@ -4,7 +4,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 .ONESHELL:
-LEGS := validation pages speed site scenes demo
+LEGS := validation pages speed site scenes lab demo
 .PHONY: all $(LEGS)
 
 all: $(LEGS)
@@ -46,6 +46,13 @@ scenes:
 	kinsim run rest-gallery --quiet --set clock.steps=60 --set method.velocity.count=32 --plot "$(WORK)/rest.png"
 	kinsim animate bend --quiet --method macroscopic --set cells.count=64 --frames 5 -o "$(WORK)/bend.gif"
 	python -m kinsim --version
+	echo "--- $@: $$SECONDS s"
+
+lab:
+	@python benchmarks/lab.py --seconds 3 --picture "$(WORK)/lab.png" --out "$(WORK)/lab.json"
+	cp docs/how-to/lab.md "$(WORK)"
+	python .ci/tables.py "$(WORK)" "$(WORK)/lab.md"
+	if cmp -s docs/how-to/lab.md "$(WORK)/lab.md"; then echo "docs/how-to/lab.md took no new table" && exit 1; fi
 	echo "--- $@: $$SECONDS s"
 
 demo:

@@ -10,6 +10,7 @@ import typer
 from .commands import advise, budget, sweep, trade
 from .errors import InputError
 from .film.command import animate
+from .lab.command import lab
 from .shell import (
     EXIT_CODES,
     SCENE,
@@ -303,7 +304,7 @@ def schema(
     write_text(f"{text}\n", out)
 
 
-for command in (sweep, trade, budget, advise, atlas, animate):
+for command in (sweep, trade, budget, advise, atlas, animate, lab):
     app.command()(told()(command))
 
 

@@ -86,13 +86,10 @@ def read_keys(name_or_path: str | Path) -> dict[str, Any]:
     if path.exists() and not (path.is_file() or path.is_dir()):
         raise InputError(f"{name_or_path}: is no ordinary file; give the path of a scene file")
     try:
-        keys = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        content = path.read_bytes()
     except OSError as error:
         raise InputError(f"{name_or_path}: cannot be read: {error.strerror}; give the path of a scene file") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{name_or_path}: is not UTF-8 text; give a scene file in TOML") from None
-    except (tomllib.TOMLDecodeError, ValueError, RecursionError) as error:
-        raise InputError(f"{name_or_path}: is not TOML: {error}; correct it there") from None
+    keys = parse_keys(content, str(name_or_path))
     for table in (keys.get("heap"), _inside(keys, "chute", "zeta")):
         if isinstance(table, dict) and isinstance(table.get("path"), str):
             table["path"] = str(path.parent / table["path"])
@@ -104,6 +101,16 @@ def _inside(keys: Any, *names: str) -> Any:
     for name in names:
         keys = keys.get(name) if isinstance(keys, dict) else None
     return keys
+
+
+def parse_keys(content: bytes, place: str) -> dict[str, Any]:
+    """The keys that a scene file with this content has; `place` names it where something is wrong."""
+    try:
+        return tomllib.loads(content.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n"))
+    except UnicodeDecodeError:
+        raise InputError(f"{place}: is not UTF-8 text; give a scene file in TOML") from None
+    except (tomllib.TOMLDecodeError, ValueError, RecursionError) as error:
+        raise InputError(f"{place}: is not TOML: {error}; correct it there") from None
 
 
 def check(keys: dict[str, Any], place: str) -> SceneFile:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
@@ -200,19 +200,34 @@ class Loop:
 
     def run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
         """Step until the clock or a fault ends it; what is refused in the first step is refused before the run."""
+        steps = self.steps()
+        while not interrupt.asked:
+            try:
+                next(steps)
+            except StopIteration as end:
+                verdict: Verdict = end.value
+                return verdict
+            self.keeper.after_step(self.kept)
+            if progress and self.step % 16 == 0:
+                progress(self.clock.progress(self.step, self.t))
+        self.keeper.put_down(self.kept())
+        return self.verdict("interrupted", "interrupted")
+
+    def steps(self) -> Generator[None, None, Verdict]:
+        """Take a step each time it is asked for the next; the stages of the step stand in the stepper until then."""
         try:
-            return self._run(progress, interrupt)
+            return (yield from self._steps())
         except InputError as error:
             if self.step == 0:
                 raise
             return self.verdict("refused", f"{error}; stopped")
 
-    def _run(self, progress: Progress | None, interrupt: Deferred) -> Verdict:
+    def _steps(self) -> Generator[None, None, Verdict]:
         scene, clock, stepper, awake = self.scene, self.clock, self.stepper, self.awake
         dx, beta = scene.cells.dx, scene.beta
         sleepy = self._same_length()
         look = Survey.of(self.h, self.q, beta)
-        while not interrupt.asked:
+        while True:
             speed = awake.begin(self.h, self.q, sleepy if self._unseen() else None)
             reach = awake.at.reach() if awake.at else 0.0
             dt = clock.next_dt(self.step, self.t, max(speed, self.fastest, self.falling), dx)
@@ -263,11 +278,7 @@ class Loop:
                 return self.verdict("lifted-off", "the mass left the ground, and the chute is strict; stopped")
             if settled and not last:
                 return self.verdict("at-rest", "came to rest")
-            self.keeper.after_step(self.kept)
-            if progress and self.step % 16 == 0:
-                progress(clock.progress(self.step, self.t))
-        self.keeper.put_down(self.kept())
-        return self.verdict("interrupted", "interrupted")
+            yield
 
     def verdict(self, kind: VerdictKind, message: str, cell: int | None = None) -> Verdict:
         """A verdict on the run so far, in words, with the step."""

@@ -21,6 +21,25 @@ def test_two_blocks_have_one() -> None:
     assert isinstance(exact_of(steep), AcceleratedRiemann)
 
 
+def test_blocks_that_move_have_one_unless_friction_meets_both_signs() -> None:
+    scene, _, _ = load_scene("riemann")
+    moving = replace(scene, heap=Blocks((0.5,), (1.0, 0.4), (0.3, -0.1)))
+    found = exact_of(moving)
+    assert found == Riemann(1.0, 0.3, 0.4, -0.1, beta=0.4, x0=0.5)
+    h, q = moving.initial()
+    np.testing.assert_array_equal(found(scene.x, 0.0)[0], h)
+    np.testing.assert_allclose(found(scene.x, 0.0)[1], q / h, rtol=1e-15)
+    run = simulate(moving, Macroscopic(4, order=2), Fixed(1e-2, 100), 100)
+    still = simulate(replace(moving, heap=Blocks((0.5,), (1.0, 0.4))), Macroscopic(4, order=2), Fixed(1e-2, 100), 100)
+    near, far = (np.abs(one.h[-1] - found(scene.x, 1.0)[0]).mean() for one in (run, still))
+    assert near < 0.1 * far
+    assert exact_of(replace(moving, friction=Coulomb(0.3))) is None
+    steep = replace(
+        moving, chute=ConstantSlope(0.5), friction=Coulomb(0.3), heap=Blocks((0.5,), (1.0, 0.4), (2.0, 1.9))
+    )
+    assert isinstance(exact_of(steep), AcceleratedRiemann)
+
+
 def test_a_layer_that_is_the_same_everywhere_slides() -> None:
     """However it is written; the picture of its run has the overlay."""
     scene, _, _ = load_scene("riemann")

@@ -78,6 +78,14 @@ def test_blocks_jump_at_their_edges() -> None:
     np.testing.assert_array_equal(u, 0)
 
 
+def test_heaps_may_move():
+    x = np.array([-2.0, -1.0, 0.0, 1.0, 1.5])
+    np.testing.assert_array_equal(Blocks((-1, 1), (0.3, 2.3, 0.3), (1, 0, -2))(x)[1], [1, 1, 0, 0, -2])
+    for heap in (Parabola(velocity=0.4), Sine(velocity=0.4)):
+        np.testing.assert_array_equal(heap(x)[1], np.full(5, 0.4))
+        np.testing.assert_array_equal(heap(x)[0], type(heap)()(x)[0])
+
+
 def test_parabola_and_sine_are_the_papers() -> None:
     x = np.linspace(-4, 4, 1001)
     h, u = Parabola(peak=1, steepness=4)(x)
@@ -168,6 +176,7 @@ BAD = [
     (lambda: Expression("h0 + x"), "h0"),
     (lambda: Blocks((0, 0), (1, 2, 3)), "increase"),
     (lambda: Blocks((0, 1), (1, 2)), "heights"),
+    (lambda: Blocks((0,), (1, 2), (0,)), "velocities"),
     (lambda: Fixed(0, 5), "dt"),
     (lambda: Fixed(-1e-3, 5), "dt"),
     (lambda: Fixed(1e-3, 0), "steps"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..errors import InputError
 from ..model.boundary import streams
 from ..model.ground import Flat
 from ..model.heap import Blocks
@@ -25,8 +26,12 @@ def exact_of(scene: Scene) -> Riemann | AcceleratedRiemann | UniformSlide | None
         return UniformSlide(float(u[0]), ground.pull, ground.hold, float(h[0]))
     if not isinstance(heap, Blocks) or len(heap.edges) != 1 or scene.boundary != "open":
         return None
-    frame = Riemann(heap.heights[0], 0.0, heap.heights[1], 0.0, beta=ground.beta, x0=heap.edges[0])
+    (h_left, h_right), (u_left, u_right) = heap.heights, heap.speeds
+    frame = Riemann(h_left, u_left, h_right, u_right, beta=ground.beta, x0=heap.edges[0])
     if not scene.forced:
         return frame
-    sliding = AcceleratedRiemann(frame, pull=ground.pull, resistance=ground.hold)
+    try:
+        sliding = AcceleratedRiemann(frame, pull=ground.pull, resistance=ground.hold)
+    except InputError:  # some of it slides the other way
+        return None
     return sliding if sliding.until > 0.0 else None

@@ -22,49 +22,70 @@ State = tuple[Array, Array]
 
 @value
 class Blocks:
-    """Heights that jump at `edges`: heights[k] between edges[k-1] and edges[k], the upper edge included."""
+    """Heights that jump at `edges`: heights[k] between edges[k-1] and edges[k], the upper edge included.
+
+    `velocities`, one for each height, are 0 if not given.
+    """
 
     edges: tuple[Number, ...]
     heights: tuple[Number, ...]
+    velocities: tuple[Number, ...] | None = None
     kind: Literal["blocks"] = kind("blocks")
 
     def __post_init__(self) -> None:
         if len(self.heights) != len(self.edges) + 1:
             raise ValueError(f"{len(self.edges)} edges need {len(self.edges) + 1} heights, got {len(self.heights)}")
+        if len(self.speeds) != len(self.heights):
+            raise ValueError(f"{len(self.heights)} heights need as many velocities, got {len(self.speeds)}")
         if any(a >= b for a, b in zip(self.edges, self.edges[1:], strict=False)):
             raise ValueError("edges must increase; sort them")
 
     def __call__(self, x: Array) -> State:
         """h, u at `x`."""
-        return np.asarray(self.heights)[np.searchsorted(self.edges, x, side="left")], np.zeros_like(x)
+        block = np.searchsorted(self.edges, x, side="left")
+        return np.asarray(self.heights)[block], np.asarray(self.speeds)[block]
+
+    @property
+    def speeds(self) -> tuple[float, ...]:
+        """The velocity of each block."""
+        return (0.0,) * len(self.heights) if self.velocities is None else self.velocities
 
 
 @value
 class Parabola:
-    """The cap max(peak/10, peak - steepness (x - centre)^2): the paper's fourth example, K = peak and l = steepness."""
+    """The cap max(peak/10, peak - steepness (x - centre)^2): the paper's fourth example, K = peak and l = steepness.
+
+    All of it has the same `velocity`.
+    """
 
     peak: Number = 1.0
     steepness: Number = 4.0
     centre: Number = 0.0
+    velocity: Number = 0.0
     kind: Literal["parabola"] = kind("parabola")
 
     def __call__(self, x: Array) -> State:
         """h, u at `x`."""
-        return np.maximum(self.peak / 10, self.peak - self.steepness * (x - self.centre) ** 2), np.zeros_like(x)
+        h = np.maximum(self.peak / 10, self.peak - self.steepness * (x - self.centre) ** 2)
+        return h, np.full_like(x, self.velocity)
 
 
 @value
 class Sine:
-    """The paper's fifth example: max(0.9 sin(pi y) - 0.3 sin(2 pi y), 0.1) for 0 < y = x - start < 1, else 0.1."""
+    """The paper's fifth example: max(0.9 sin(pi y) - 0.3 sin(2 pi y), 0.1) for 0 < y = x - start < 1, else 0.1.
+
+    All of it has the same `velocity`.
+    """
 
     start: Number = 0.6
+    velocity: Number = 0.0
     kind: Literal["sine"] = kind("sine")
 
     def __call__(self, x: Array) -> State:
         """h, u at `x`."""
         y = x - self.start
         hump = np.maximum(0.9 * np.sin(np.pi * y) - 0.3 * np.sin(2 * np.pi * y), 0.1)
-        return np.where((y > 0) & (y < 1), hump, 0.1), np.zeros_like(x)
+        return np.where((y > 0) & (y < 1), hump, 0.1), np.full_like(x, self.velocity)
 
 
 @value

@@ -1,0 +1,34 @@
+"""Plays are made aside: kernels that nobody used before on this machine compile for seconds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+
+from ..read import SceneFile
+from .books import Ledger
+from .cut import cut_at
+from .play import STAGES, Play
+
+_aside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="kinsim-lab")
+_compiled: set[tuple[object, ...]] = set()
+
+
+def make(file: SceneFile) -> Play:
+    """A play that is ready to go; the first one of its kind in this process takes a step that nobody sees."""
+    method, scene = file.method, file.scene
+    kind = (*(getattr(method, name, None) for name in ("scheme", "coupling", "order", "equilibrium", "force")),
+            scene.forced, scene.boundary, scene.friction.kind)  # fmt: skip
+    if kind not in _compiled:
+        rehearsal = Play(file)
+        for _ in STAGES:
+            rehearsal.next_stage()
+            cut_at(rehearsal, rehearsal.moment(), 0)
+        Ledger(rehearsal).books()
+        _compiled.add(kind)
+    return Play(file)
+
+
+def make_aside(file: SceneFile, done: Callable[[Future[Play]], None]) -> None:
+    """The same in a thread; `done` gets it there."""
+    _aside.submit(make, file).add_done_callback(done)

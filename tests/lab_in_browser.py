@@ -1,0 +1,261 @@
+"""`kinsim lab` in a real Chromium: run by `.ci/browser.py`, not with the other tests, since a machine may have none.
+
+What the page shows is read from the browser, and judged by `kinsim.step`, `simulate` and quadrature.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from playwright.sync_api import expect, sync_playwright
+
+from kinsim import load_scene, simulate, step
+from kinsim.lab.play import Play
+from kinsim.lab.setup import Setup
+from kinsim.lab.view.widgets import PAUSE
+
+FIRST = 60_000
+"""Milliseconds for what may have to compile kernels."""
+
+expect.set_options(timeout=30_000)
+
+PICTURE = """() => {
+  const models = Bokeh.documents.flatMap(doc => [...doc._all_models.values()])
+  const found = models.find(model => model.name == "picture of f")
+  const image = found.data.image[0]
+  return {shape: image.shape, values: Array.from(image)}
+}"""
+
+
+@pytest.fixture(scope="session")
+def server():
+    """The command as a user types it; ended as a user ends it."""
+    words = [sys.executable, "-m", "kinsim", "lab", "silo", "--no-browser"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
+        try:
+            line = running.stdout.readline()
+            yield re.search(r"http://127\.0\.0\.1:\d+/", line)[0]
+        finally:
+            running.send_signal(signal.SIGINT)
+            out, err = running.communicate(timeout=60)
+    assert (running.returncode, out, err) == (0, "kinsim lab: ended\n", "")
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    path = os.environ["KINSIM_CHROMIUM"]
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def open_page(server, chromium):
+    """Opens pages of the lab; in the end none of them has complained, or asked anybody else for anything."""
+    troubles, pages = [], []
+
+    def asked(request):
+        if not request.url.startswith((server, "blob:", "data:")):
+            troubles.append(f"asked for {request.url}")
+
+    def opened(width: int = 1400, height: int = 900):
+        page = chromium.new_page(viewport={"width": width, "height": height}, accept_downloads=True)
+        page.on("console", lambda said: troubles.append(said.text) if said.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: troubles.append(str(error)))
+        page.on("request", asked)
+        page.on("response", lambda got: troubles.append(f"{got.status} {got.url}") if got.status >= 400 else None)
+        page.goto(server)
+        expect(page.locator(".now")).to_contain_text("step 0", timeout=FIRST)
+        pages.append(page)
+        return page
+
+    yield opened
+    for page in pages:
+        page.close()
+    assert troubles == []
+
+
+@pytest.fixture(scope="session")
+def first(open_page):
+    return open_page()
+
+
+@pytest.fixture
+def page(first):
+    """The page as it comes, at its start."""
+    first.locator(".scene select").select_option("silo")
+    press(first, "reset")
+    first.locator(".stage button").nth(1).click()
+    expect(first.locator(".now")).to_contain_text("step 0")
+    expect(first.locator(".knob-clock-number")).to_contain_text("0.450")
+    np.testing.assert_array_equal(settled(first), start_of("silo"))
+    return first
+
+
+def start_of(scene: str) -> np.ndarray:
+    """M of the initial state of a scene on the nodes of the lab, as the page has it."""
+    return Play(Setup.of_scene(scene).file).moment().f.T.astype(np.float32)
+
+
+def settled(page) -> np.ndarray:
+    """The picture once it stays: a new run is made aside."""
+    for _ in range(60):
+        before = picture(page)
+        page.wait_for_timeout(400)
+        if np.array_equal(after := picture(page), before):
+            return after
+    return after
+
+
+def picture(page) -> np.ndarray:
+    """f as the browser has it, shape (n, nx)."""
+    got = page.evaluate(PICTURE)
+    return np.array(got["values"]).reshape(got["shape"])
+
+
+def press(page, name: str) -> None:
+    page.locator(f".{name} button").first.click()
+
+
+def steps(page) -> int:
+    return int(re.search(r"step (\d+)", page.locator(".now").inner_text())[1])
+
+
+def moments(page) -> dict[str, list[str]]:
+    """The rows of the table, by the name of the moment."""
+    rows = page.locator("tr[data-moment]").all()
+    return {row.get_attribute("data-moment"): [cell.inner_text() for cell in row.locator("td").all()] for row in rows}
+
+
+def number(text: str) -> float:
+    return float(text.replace("\N{MINUS SIGN}", "-").split()[0])
+
+
+def turn(page, knob: str, key: str, times: int = 1) -> None:
+    """Move a slider by its keyboard."""
+    handle = page.locator(f".knob-{knob} .noUi-handle").first
+    handle.focus()
+    for _ in range(times):
+        handle.press(key)
+
+
+def test_stages_are_those_of_a_step(page):
+    file = Setup.of_scene("silo").file
+    play = Play(file)
+    play.advance()
+    h, q = file.scene.initial()
+    stages = step(file.scene, play.method, h, q, play.loop.dts[0])
+    np.testing.assert_array_equal(picture(page), stages.M.T.astype(np.float32))
+    after = step(file.scene, play.method, stages.h1, stages.q1, play.loop.dts[0])
+    for words, f in (("Transport", stages.f_transport), ("Force", stages.f_force), ("Projection", after.M)):
+        press(page, "next")
+        expect(page.locator(".stage-told")).to_contain_text(words)
+        np.testing.assert_array_equal(picture(page), f.T.astype(np.float32))
+        assert steps(page) == 1
+    press(page, "next")
+    expect(page.locator(".now")).to_contain_text("step 2")
+
+
+def test_it_plays_and_pauses_and_another_tab_does_not(page, open_page):
+    other = open_page(1000, 700)
+    before = page.locator(".bk-Canvas, canvas").first.screenshot()
+    press(page, "play")
+    expect(page.locator(".play button")).to_contain_text(PAUSE)
+    expect(page.locator(".now")).to_contain_text("pictures/s")
+    press(page, "play")
+    expect(page.locator(".play button")).not_to_contain_text(PAUSE)
+    page.wait_for_timeout(300)
+    seen = steps(page)
+    assert seen >= 5
+    page.wait_for_timeout(300)
+    assert steps(page) == seen
+    assert steps(other) == 0
+    assert page.locator(".bk-Canvas, canvas").first.screenshot() != before
+    file = Setup.of_scene("silo").file
+    run = simulate(file.scene, file.method, file.clock, save_every=1)
+    f = step(file.scene, Play(file).method, run.h[seen - 1], run.q[seen - 1], run.dt[seen - 1]).f_force
+    np.testing.assert_array_equal(picture(page), f.T.astype(np.float32))
+
+
+def test_shaded_moments_keep_their_bound_and_misprints_show(page):
+    for _ in range(3):
+        press(page, "one")
+    expect(page.locator(".now")).to_contain_text("step 3")
+    page.locator(".printed input").check()
+    expect(page.locator(".moments th").last).to_have_text("as printed")
+    rows = moments(page)
+    assert list(rows) == ["I1", "I2", "I3", "I4"]
+    for cells in rows.values():
+        summed, closed, difference, bound = (number(cell) for cell in cells[2:6])
+        assert abs(difference) <= bound
+        assert summed - closed == pytest.approx(difference, abs=1.1e-6 + 0.06 * abs(difference))
+        assert closed != 0.0
+    assert "✗" in rows["I3"][6]
+    assert all("✓" in rows[name][6] for name in ("I1", "I2", "I4"))
+    page.locator(".faces select").select_option(label="balanced face (25)")
+    expect(page.locator("tr[data-moment='Ĩ1']")).to_be_visible()
+    assert "✗" in moments(page)["Ĩ1"][6]
+
+
+def test_a_slider_changes_the_picture_and_a_saved_scene_brings_it_back(page, open_page, tmp_path):
+    start = picture(page)
+    turn(page, "heap-heights-1", "ArrowRight", 3)
+    turn(page, "epsilon", "ArrowLeft", 2)
+    expect(page.locator(".knob-heap-heights-1")).to_contain_text("2.450")
+    changed = settled(page)
+    assert changed.shape == start.shape
+    assert np.abs(changed - start).max() > 0.01
+    with page.expect_download() as download:
+        page.locator(".save a, .save button").first.click()
+    path = tmp_path / "saved.toml"
+    download.value.save_as(path)
+    scene, method, clock = load_scene(path)
+    assert scene.heap.heights == (0.3, 2.45, 0.3)
+    assert scene.epsilon == 0.38
+    run = simulate(scene, method, clock, save_every=1)
+    for _ in range(2):
+        press(page, "one")
+    expect(page.locator(".now")).to_contain_text("step 2")
+    shown = picture(page)
+    other = open_page()
+    other.locator(".load input").set_input_files(path)
+    expect(other.locator(".knob-heap-heights-1")).to_contain_text("2.450")
+    np.testing.assert_array_equal(settled(other), changed)
+    for _ in range(2):
+        press(other, "one")
+    expect(other.locator(".now")).to_contain_text("step 2")
+    np.testing.assert_array_equal(picture(other), shown)
+    f = step(
+        scene, Play(Setup.of_content(path.read_bytes(), "saved").file).method, run.h[1], run.q[1], run.dt[1]
+    ).f_force
+    np.testing.assert_array_equal(shown, f.T.astype(np.float32))
+
+
+def test_wrong_settings_get_a_sentence(page, tmp_path):
+    turn(page, "clock-number", "End")
+    expect(page.locator(".told .fault")).to_have_text(
+        "Courant number 1.2 is above 1, the CFL bound (28); take at most 1"
+    )
+    expect(page.locator(".play button")).to_be_disabled()
+    turn(page, "clock-number", "Home")
+    expect(page.locator(".told .fault")).to_have_count(0)
+    expect(page.locator(".play button")).to_be_enabled()
+    path = tmp_path / "wrong.toml"
+    path.write_text("epsilon = ", encoding="utf-8")
+    page.locator(".load input").set_input_files(path)
+    expect(page.locator(".told .fault")).to_contain_text("wrong.toml: is not TOML")
+
+
+def test_a_click_chooses_the_cell(page):
+    before = page.locator(".cut-title h2").inner_text()
+    chart = page.locator(".chart").first.bounding_box()
+    page.mouse.click(chart["x"] + 0.7 * chart["width"], chart["y"] + 0.5 * chart["height"])
+    expect(page.locator(".cut-title h2")).not_to_have_text(before)
+    assert re.search(r"Cut at x = [1-7]", page.locator(".cut-title h2").inner_text())

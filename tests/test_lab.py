@@ -1,0 +1,274 @@
+"""The lab without its page: it runs what simulate runs, shows what step shows, and saves what it shows."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import EPS, random_states
+from scipy.integrate import quad
+from test_cli import kinsim
+
+from kinsim import ConstantSlope, InputError, load_scene, printed, simulate, step
+from kinsim.lab.books import TOLD, Ledger
+from kinsim.lab.cut import cut_at, error_bound
+from kinsim.lab.knobs import Slider, knobs_of
+from kinsim.lab.picture import image_of
+from kinsim.lab.play import STAGES, Play
+from kinsim.lab.prepare import make
+from kinsim.lab.setup import Setup
+from kinsim.read import built_in
+from kinsim.watch.causes import STAGES as CAUSES
+
+SMALL = (("cells.count", 60), ("method.velocity.count", 32))
+
+METHODS = {
+    "scheme 1": (("method.scheme", 1),),
+    "scheme 2": (("method.scheme", 2),),
+    "scheme 3": (),
+    "scheme 3, faces": (("method.coupling", "face"),),
+    "scheme 4": (("method.scheme", 4),),
+    "scheme 4, order 2": (("method.scheme", 4), ("method.order", 2)),
+    "exact shift": (("method.force", "shift-exact"),),
+    "matched": (("method.equilibrium", "matched"),),
+}
+REFUSED = ("clock.number", "method.velocity.count", "boundary", "method.order")
+"""Knobs whose ends may not go with the rest of a scene."""
+
+SMOOTH = "scheme 4 on a smooth chute"
+
+
+def setup_of(scene: str, *turns: tuple[str, object]) -> Setup:
+    setup = Setup.of_scene(scene)
+    for key, given in turns:
+        setup = setup.turned(key, given)
+    return setup
+
+
+@pytest.fixture(scope="module", params=[*METHODS, SMOOTH])
+def played(request):
+    """A run of twelve steps in the lab, and its setup."""
+    scene = "bend" if request.param == SMOOTH else "silo-incline"
+    setup = setup_of(scene, *SMALL, *METHODS.get(request.param, METHODS["scheme 4"]))
+    play = make(setup.file)
+    for _ in range(12):
+        assert play.advance()
+    return setup, play
+
+
+def test_it_takes_the_steps_of_a_run(played):
+    setup, play = played
+    file = setup.file
+    run = simulate(file.scene, file.method, file.clock, save_every=1)
+    np.testing.assert_array_equal(play.loop.h, run.h[12])
+    np.testing.assert_array_equal(play.loop.q, run.q[12])
+    assert play.loop.t == run.t[12]
+    twin = simulate(file.scene, file.method.twin, run.replay, save_every=1)
+    np.testing.assert_array_equal(play.twin.h, twin.h[12])
+    np.testing.assert_array_equal(play.twin.q, twin.q[12])
+
+
+def test_each_stage_is_that_of_a_step(played):
+    setup, play = played
+    before = Play(setup.file)
+    for _ in range(11):
+        before.advance()
+    h, q = before.loop.h.copy(), before.loop.q.copy()
+    shown = step(play.scene, play.method, h, q, play.loop.dts[-1])
+    for stage, f, momentum in (("transport", shown.f_transport, shown.qhat), ("force", shown.f_force, shown.q1)):
+        play.stage = stage
+        moment = play.moment()
+        np.testing.assert_array_equal(moment.f, f)
+        np.testing.assert_array_equal(moment.h, shown.h1)
+        np.testing.assert_allclose(moment.h * np.nan_to_num(moment.u), momentum, rtol=4 * EPS, atol=1e-300)
+        np.testing.assert_array_equal(moment.face_h, h)
+    play.stage = "projection"
+    first = replace(play.method, order=1)  # order 2 begins with two halves of a cell
+    np.testing.assert_array_equal(play.moment().f, step(play.scene, first, shown.h1, shown.q1, 1e-3).M)
+    play.stage = "force"
+
+
+def test_the_ledger_adds_up_and_is_the_one_of_a_run(played):
+    setup, play = played
+    books = Ledger(play).books()
+    if setup.file.method.order == 2 or not isinstance(setup.file.chute, ConstantSlope):
+        assert not books.causes
+        return
+    assert np.abs(books.unexplained).max() <= 64 * EPS * np.abs(books.now).max() * len(CAUSES)
+    run = simulate(setup.file.scene, setup.file.method, setup.file.clock, save_every=12, causes=True)
+    booked = run.causes["sum"].sel(t=run.t[1], quantity=["mass", "momentum", "entropy"])
+    for cause, name in TOLD.items():
+        np.testing.assert_array_equal(books.causes[name], booked.sel(stage=cause))
+
+
+def test_three_stages_are_a_step():
+    play = Play(setup_of("silo", *SMALL).file)
+    assert play.moment().stage == "projection"
+    seen = []
+    for _ in range(7):
+        assert play.next_stage()
+        seen.append((play.step, play.moment().stage))
+    assert seen == [(1 + k // 3, STAGES[k % 3]) for k in range(7)]
+
+
+def test_a_run_that_is_over_says_how():
+    play = Play(setup_of("riemann", *SMALL, ("clock.end", 0.5)).file)
+    while play.advance():
+        pass
+    assert play.verdict.kind == "finished"
+    assert play.loop.t == 0.5
+    assert not play.next_stage()
+    assert play.moment().stage == "projection"
+    np.testing.assert_allclose(play.moment().exact_h, play.exact(play.scene.x, 0.5)[0])
+
+
+def test_moments_of_the_cut_keep_their_bound_and_match_quadrature(rng):
+    """Closed forms against quadrature; sums over the shaded cells within what is proved; misprints as in the paper."""
+    beta, dxi = 0.4, 0.05
+    setup = setup_of("riemann", *SMALL, ("heap.velocities.0", 0.6), ("heap.velocities.1", -0.2))
+    play = make(setup.file)
+    for _ in range(9):
+        play.advance()
+    moment = play.moment()
+    worst = 0.0
+    for cell in range(0, 60, 7):
+        for states in ("upwind", "balanced"):
+            for half in cut_at(play, moment, cell, states).halves:
+                assert abs(half.summed - half.closed) <= half.bound
+                worst = max(worst, abs(half.summed - half.closed) / half.bound)
+    assert worst > 0.02  # a bound that is never approached would say nothing
+    cut = cut_at(play, moment, 30)
+    h, u = moment.face_h[30:32], moment.face_u[30:32]
+    for k, half in enumerate(cut.halves):
+        side, power = k % 2, 1 + k // 2
+        c = math.sqrt(2 * play.scene.beta * h[side])
+        low, high = u[side] - c, u[side] + c
+        ends = (max(low, 0.0), max(high, 0.0)) if side == 0 else (min(low, 0.0), min(high, 0.0))
+        found, _ = quad(
+            lambda xi, power=power, side=side, c=c: xi**power * math.sqrt(max(c * c - (xi - u[side]) ** 2, 0.0)),
+            *ends, epsabs=1e-13, limit=200,
+        )  # fmt: skip
+        assert half.closed == pytest.approx(found / (math.pi * play.scene.beta), abs=1e-10)
+    assert [half.misprinted for half in cut.halves] == [False, False, True, False]
+    assert cut.halves[2].printed == printed.I3(float(h[0]), float(u[0]), play.scene.beta)
+    balanced = cut_at(play, moment, 30, "balanced").halves
+    assert [half.misprinted for half in balanced] == [True, True, False, False]
+    assert [half.name for half in balanced] == ["Ĩ1", "Ĩ2", "Ĩ3", "Ĩ4"]
+    for h_one, u_one in zip(*random_states(rng, 20), strict=True):
+        assert error_bound(True, h_one, u_one, beta, dxi) > 0.0
+
+
+def test_the_last_cell_shows_the_wall_on_its_left():
+    play = Play(setup_of("silo", *SMALL).file)
+    cut = cut_at(play, play.moment(), 59)
+    assert cut.cell == 59
+    assert cut.face_x == pytest.approx(play.scene.cells.right - play.scene.cells.dx)
+
+
+def test_rows_whose_nodes_moved_are_drawn_where_they_are():
+    play = make(setup_of("silo", *SMALL, ("method.force", "shift-exact")).file)
+    play.advance()
+    moment, grid = play.moment(), play.density.grid
+    cells = np.arange(moment.h.size) % 7 - 3  # velocity cells up and down, and a bit
+    image = image_of(replace(moment, offset=(cells + 0.3) * grid.dxi), grid)
+    for row, moved in enumerate(cells):
+        expected = np.roll(moment.f[row].astype(np.float32), moved)
+        expected[: max(moved, 0)] = 0.0
+        expected[expected.size + min(moved, 0) :] = 0.0
+        np.testing.assert_array_equal(image[:, row], expected)
+    np.testing.assert_array_equal(image_of(replace(moment, offset=0.0 * cells), grid), moment.f.T.astype(np.float32))
+
+
+@pytest.mark.parametrize("scene", [*built_in()])
+def test_every_knob_gives_a_run_or_a_sentence(scene):
+    start = setup_of(scene)
+    for knobs in knobs_of(start.file).values():
+        for knob in knobs:
+            given = start.given(knob.key)
+            if isinstance(knob, Slider):
+                assert knob.given(knob.shown(given)) == pytest.approx(given)
+                tried = [knob.given(at) for at in (knob.low, 0.5 * (knob.low + knob.high), knob.high)]
+            else:
+                assert given in knob.options.values()
+                tried = list(knob.options.values())
+            for value in tried:
+                turned = start.turned(knob.key, value)
+                assert turned.refusal or turned.given(knob.key) == pytest.approx(value)
+                assert "\n" not in turned.refusal
+                assert not turned.refusal or knob.key in REFUSED
+
+
+@pytest.mark.parametrize("scene", [*built_in()])
+@pytest.mark.parametrize("method", METHODS)
+def test_a_saved_scene_is_the_same_scene(scene, method, tmp_path):
+    slope = [("chute.zeta", 0.1)] if isinstance(Setup.of_scene(scene).file.chute, ConstantSlope) else []
+    setup = setup_of(scene, *METHODS[method], *slope, ("friction.delta", 0.3), ("epsilon", 0.31))
+    path = tmp_path / "saved.toml"
+    path.write_text(setup.toml(), encoding="utf-8")
+    assert Setup.of_content(path.read_bytes(), "saved.toml").file == setup.file
+    assert load_scene(path) == (setup.file.scene, setup.file.method, setup.file.clock)
+
+
+def test_what_does_not_go_together_gets_a_sentence():
+    order = setup_of("silo", ("method.scheme", 4), ("method.order", 2))
+    assert order.turned("clock.number", 0.6).refusal == (
+        "Courant number 0.6 is above 0.49, the CFL bound of order 2; take at most 0.49"
+    )
+    refused = order.turned("method.force", "shift-exact")
+    assert "take projection 'flux-difference' and another force" in refused.refusal
+    assert not refused.turned("method.order", 1).refusal
+    assert not order.turned("clock.number", 0.6).turned("clock.number", 0.4).refusal
+    assert not setup_of("silo", ("clock.number", 1.0)).refusal
+    with pytest.raises(InputError, match="is not TOML"):
+        Setup.of_content(b"no toml", "x.toml")
+    with pytest.raises(InputError, match="did you mean silo"):
+        Setup.of_scene("sillo")
+
+
+def test_other_schemes_forget_what_they_do_not_read():
+    setup = setup_of("silo", ("method.coupling", "face"))
+    assert setup.turned("method.scheme", 4).file.method.coupling == "cell"
+    order = setup_of("silo", ("method.scheme", 4), ("method.order", 2))
+    assert order.turned("method.scheme", 1).file.method.order == 1
+
+
+def test_methods_without_fixed_nodes_get_some_and_say_so():
+    for given in ('kind = "macroscopic"\nscheme = 4', 'velocity = {kind = "fitted", count = 6}\nscheme = 4'):
+        toml = setup_of("silo").toml().partition("[method]")[0]
+        content = f"{toml}[method]\n{given}\n[clock]\ndt = 0.01\nsteps = 9"
+        setup = Setup.of_content(content.encode(), "x")
+        assert setup.file.method.velocity.count == 128
+        assert setup.file.method.scheme == 4
+        assert "128" in setup.notes[0]
+        assert setup.given("clock.end") == pytest.approx(0.09)
+        assert setup.turned("clock.number", 0.3).file.clock.end == pytest.approx(0.09)
+
+
+WITHOUT = """
+import sys
+for name in ("panel", "bokeh", "tomli_w", "playwright"):
+    sys.modules[name] = None
+import kinsim.lab.books, kinsim.lab.cut, kinsim.lab.knobs, kinsim.lab.picture, kinsim.lab.play, kinsim.lab.prepare
+import kinsim.lab.setup, kinsim.lab.serve, kinsim.lab.command
+from kinsim.cli import app
+app(["lab"])
+"""
+
+
+def test_without_the_extra_all_but_the_page_is_there():
+    """The remedy in a line; the model of the lab loads, and needs nothing of the extra."""
+    found = subprocess.run([sys.executable, "-c", WITHOUT], capture_output=True, text=True, check=False)
+    assert found.returncode == 2
+    assert found.stderr == "lab: Panel and Bokeh are not installed; run: pip install 'kinsim[lab]'\n"
+
+
+def test_bad_requests_are_told_in_a_line(tmp_path):
+    assert "no such scene" in kinsim("lab", "nowhere", code=2).stderr
+    assert "leave out --port" in kinsim("lab", "silo", "--port", "99999", code=2).stderr
+    fast = tmp_path / "fast.toml"
+    fast.write_text(setup_of("silo", ("clock.number", 1.1)).toml(), encoding="utf-8")
+    assert "take at most 1" in kinsim("lab", str(fast), code=2).stderr
