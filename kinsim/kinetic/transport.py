@@ -40,6 +40,13 @@ def sum_rows(rows: Array, side: Array, dxi: float, mass: Array, momentum: Array)
 
 
 @kernel
+def add_moved(offset: Array, h: Array, q: Array) -> None:
+    """q + offset h, in place."""
+    for i in range(q.size):
+        q[i] += offset[i] * h[i]
+
+
+@kernel
 def add_sides(sums: Array, F1: Array, F2: Array) -> None:
     """The upwind flux (19): xi > 0 from the left cell, xi < 0 from the right one."""
     for i in range(F1.size):

@@ -15,7 +15,7 @@ from .equilibrium import Equilibrium, Status
 from .equilibrium.averages import mass_outside
 from .force import Force
 from .held import HeldFaces, put_capped, put_flux
-from .transport import add_sides, half_sums, occupied, outermost, sum_rows, transport, transport_reflecting
+from .transport import add_moved, add_sides, half_sums, occupied, outermost, sum_rows, transport, transport_reflecting
 from .velocity import Grid, Uniform, Window
 
 
@@ -246,8 +246,7 @@ class Density:
 
     def add_moved(self, h: Array, q: Array) -> None:
         """Add to q the momentum of nodes that the force has moved."""
-        if self.offset.any():
-            np.add(q, self.offset * h, out=q)
+        add_moved(self.offset, h, q)
 
     def sums(self, f: Array, mass: Array, momentum: Array) -> None:
         """Sums of f and xi f over the nodes, (20), into arrays of shape (nx,)."""
