@@ -53,9 +53,11 @@ def test_version():
     assert kinsim("--version").output == f"kinsim {__version__}\n"
 
 
-def test_scenes_lists_five_with_their_figures():
+def test_scenes_lists_all_with_their_figures():
     lines = kinsim("scenes").output.splitlines()
-    assert [line.split()[0] for line in lines] == ["scene", "riemann", "silo", "silo-incline", "parabola", "sine"]
+    names = ["riemann", "silo", "silo-incline", "parabola", "sine"]
+    names += ["bend", "bend-pressed", "exponential", "jump", "crest", "rest-gallery"]
+    assert [line.split()[0] for line in lines] == ["scene", *names]
     assert "2, 3" in lines[2]
     assert "breaking grain silo" in lines[2]
 

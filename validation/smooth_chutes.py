@@ -17,6 +17,7 @@ reflect, what friction balances of beta h_x + beta' h/2. What that is worth:
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -273,7 +274,7 @@ def braked(chapter: Chapter) -> None:
 def stopped(chapter: Chapter) -> None:
     """The slide round a bend, ever finer, with and without the friction of the bend."""
     sizes = (160, 320, 640, 1280, 2560) if chapter.full else (80, 160)
-    rows, centres, runs = [], {}, {}
+    rows, halved, centres, runs = [], [], {}, {}
     for eta in (0.0, 1.0):
         for name in ("reflect", "hold", "order 2"):
             for count in sizes:
@@ -292,22 +293,31 @@ def stopped(chapter: Chapter) -> None:
                 )
                 chapter.claim(f"bend, eta = {eta:g}, {name}, {count} cells: largest |q| of the deposit",
                               np.abs(one.q[-1][h > 1e-9]).max(), high=0.0)  # fmt: skip
-            last = [centres[eta, name, count] for count in sizes[-3:]]
+            steps = [apart(runs[eta, name, a].h[-1], runs[eta, name, b].h[-1], 32.0 / b)
+                     for a, b in itertools.pairwise(sizes)]  # fmt: skip
+            halved.append([eta, name, *steps])
             if chapter.full:
-                chapter.claim(f"bend, eta = {eta:g}, {name}: last step of its centre over the one before",
-                              abs(last[2] - last[1]) / abs(last[1] - last[0]), high=0.9)  # fmt: skip
+                chapter.claim(f"bend, eta = {eta:g}, {name}: last change of the deposit by finer cells over the first",
+                              steps[-1] / steps[0], high=0.5)  # fmt: skip
     finest = sizes[-1]
     for name in ("reflect", "hold", "order 2"):
         chapter.claim(f"bend, {name}: the friction of the bend moves the deposit uphill by",
                       centres[0.0, name, finest] - centres[1.0, name, finest], low=2.4, high=2.8)  # fmt: skip
     chapter.table("The deposit behind a bend", (
         "eta", "", "cells", "rests at t", "from x", "to x", "highest", "at x", "centre of mass"), rows)  # fmt: skip
+    pairs = (f"{a} to {b} cells" for a, b in itertools.pairwise(sizes))
+    chapter.table("By how much finer cells change the deposit: L1(h)", ("eta", "", *pairs), halved)
     one = runs[0.0, "reflect", 160]
     deposit = one.h[-1] > 1e-12
     again = simulate(replace(one.scene, heap=Profile(one.h[-1], one.u[-1])), REFLECT, Fixed(0.01, 500))
     chapter.claim("bend, reflect: cells of the deposit that change in 500 steps more",
                   int((again.h[-1] != one.h[-1])[deposit].sum()), low=0, high=0)  # fmt: skip
     chapter.figure(draw(runs, sizes), "bend", "The slide round a bend, and its deposits on ever finer cells.")
+
+
+def apart(coarse: Array, fine: Array, dx: float) -> float:
+    """L1 distance of heights on cells and on halves of them, of length dx."""
+    return float(np.abs(np.repeat(coarse, 2) - fine).sum()) * dx
 
 
 def draw(runs: dict[tuple[float, str, int], object], sizes: tuple[int, ...]) -> Figure:

@@ -46,9 +46,7 @@ class Resummed:
     def _sum(self, density: Density | None, stage: str, h: Array, q: Array) -> float:
         if density is None:
             return 0.0
-        before = h.copy()
-        density.sums(getattr(density, stage), h, q)
-        return float((h - before).sum())
+        return density.sums(getattr(density, stage), h, q)
 
 
 ProjectionName = Literal["flux-difference", "re-summed"]

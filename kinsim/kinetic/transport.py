@@ -27,16 +27,21 @@ def half_sums(rows: Array, w1: Array, w2: Array, P1: Array, P2: Array, N1: Array
 
 
 @kernel
-def sum_rows(rows: Array, side: Array, dxi: float, mass: Array, momentum: Array) -> None:
-    """Sums of f and xi f over each row, (20), outward from xi = 0 in pairs, so that mirrored sums are mirrored."""
-    half = side.size
+def sum_rows(rows: Array, side: Array, dxi: float, mass: Array, momentum: Array) -> float:
+    """Sums of f and xi f over each row, (20), outward from xi = 0 in pairs, so that mirrored sums are mirrored.
+
+    Returns by how much the sum of `mass` grows.
+    """
+    half, grown = side.size, 0.0
     for i in range(rows.shape[0]):
         m0, m1 = 0.0, 0.0
         for k in range(half):
             p, n = rows[i, half + k], rows[i, half - 1 - k]
             m0 += p + n
             m1 += (p - n) * side[k]
+        grown += m0 * dxi - mass[i]
         mass[i], momentum[i] = m0 * dxi, m1 * dxi
+    return grown
 
 
 @kernel

@@ -248,6 +248,6 @@ class Density:
         """Add to q the momentum of nodes that the force has moved."""
         add_moved(self.offset, h, q)
 
-    def sums(self, f: Array, mass: Array, momentum: Array) -> None:
-        """Sums of f and xi f over the nodes, (20), into arrays of shape (nx,)."""
-        sum_rows(f, self.grid.side, self.grid.dxi, mass, momentum)
+    def sums(self, f: Array, mass: Array, momentum: Array) -> float:
+        """Sums of f and xi f over the nodes, (20), into arrays of shape (nx,); returns how much mass that adds."""
+        return sum_rows(f, self.grid.side, self.grid.dxi, mass, momentum)
