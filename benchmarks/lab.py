@@ -24,6 +24,9 @@ from kinsim.lab.setup import Setup
 
 CELLS, NODES = 320, 128
 
+STEPS = 60
+"""After so many the silo has broken, and still moves."""
+
 LONG = 120_000
 """Milliseconds, for kernels that compile."""
 
@@ -91,10 +94,10 @@ def show(page: Page) -> None:
     over: Any = page.locator(".over button")
     over.click()
     page.wait_for_timeout(1500)
-    page.locator(".pace .noUi-handle").press("End")
     play = page.locator(".play button")
     play.click()
-    page.wait_for_timeout(1200)
+    while int(page.locator(".now b").nth(1).inner_text()) < STEPS:
+        page.wait_for_timeout(100)
     play.click()
     page.locator(".printed input").check()
     chart = page.locator(".chart").first.bounding_box()
