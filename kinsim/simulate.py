@@ -45,6 +45,8 @@ ROUNDING = 1e-12
 """By so much a Courant number may pass 1: the rounding of its own computation."""
 
 
+LIFTED = "the mass left the ground, and the chute is strict; stopped"
+
 SHORTEST = 1e-9
 """Steps shorter than this share of the whole time are not worth taking."""
 
@@ -227,6 +229,8 @@ class Loop:
         dx, beta = scene.cells.dx, scene.beta
         sleepy = self._same_length()
         look = Survey.of(self.h, self.q, beta)
+        if self.step == 0 and self.ledger.lift.note(0.0, self.h, self.q):
+            return self.verdict("lifted-off", LIFTED)
         while True:
             speed = awake.begin(self.h, self.q, sleepy if self._unseen() else None)
             reach = awake.at.reach() if awake.at else 0.0
@@ -275,7 +279,7 @@ class Loop:
                 self.ledger.save(self.h, self.q)
                 self._save()
             if lifted:
-                return self.verdict("lifted-off", "the mass left the ground, and the chute is strict; stopped")
+                return self.verdict("lifted-off", LIFTED)
             if settled and not last:
                 return self.verdict("at-rest", "came to rest")
             yield

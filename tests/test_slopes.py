@@ -106,6 +106,12 @@ def test_bad_chutes_get_one_line() -> None:
         SlopePoints((0.0, 1.0), (0.1, 0.2))
     with says("x must increase"):
         SlopePoints((0.0, 1.0, 1.0, 2.0, 3.0, 4.0), (0.0,) * 6)
+    with says("chute", "zeta is nan"):
+        scene(SlopePoints((0.0, 1e-300, 2e-300, 3.0, 4.0, 5.0), (0.0,) * 6))
+    with says("smoothing", "1000"):
+        SlopePoints((0.0, 1.0, 2.0, 3.0, 4.0, 5.0), (0.0,) * 6, smoothing=1e300)
+    with says("h", "greater than or equal to 0|at least 0"):
+        scene(Arc(9.0), boundary=({"h": -1, "u": 2}, "open"))
     with says("scheme 3", "constant slope", "scheme 4"):
         kinsim.simulate(scene(Arc(9.0)), Macroscopic(3), Fixed(1e-3, 2))
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
+from pydantic import BeforeValidator, Field
 
 from ..value import Number, kind, value
 
@@ -20,7 +20,11 @@ class Inflow:
     kind: Literal["inflow"] = kind("inflow")
 
 
-End = Literal["open", "wall"] | Inflow
+def _stream(given: Any) -> Any:
+    return Inflow(**given) if isinstance(given, dict) else given
+
+
+End = Annotated[Literal["open", "wall"] | Inflow, BeforeValidator(_stream)]
 Boundary = Literal["open", "wall", "periodic"] | tuple[End, End]
 
 EXPLAINED = {

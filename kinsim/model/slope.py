@@ -124,7 +124,8 @@ class Arc:
 class SlopeFormula:
     """A formula in x, for example ``zeta = "0.1 + 0.35*sin(x)"`` (see `kinsim.expression`).
 
-    Its derivative is taken by central differences of fourth order over thousandths of `length`.
+    Its derivative is taken by central differences of fourth order over thousandths of `length`, beyond the ends of the
+    domain, too.
     """
 
     zeta: str

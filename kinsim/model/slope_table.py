@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field
 
+from ..errors import InputError
 from ..value import Number, kind, value
 from .csv_table import read_columns
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from scipy.interpolate import UnivariateSpline
 
 Array = NDArray[np.float64]
-Smoothing = Annotated[Number, Field(ge=0)]
+Smoothing = Annotated[Number, Field(ge=0, le=1000)]
 
 BETWEEN = 20
 """Places between two points at which the length of a measured chute is summed up."""
@@ -67,7 +68,10 @@ class SlopePoints:
     def _spline(self) -> UnivariateSpline:
         from scipy.interpolate import UnivariateSpline
 
-        return UnivariateSpline(self.x, self._given, k=5, s=len(self.x) * self.smoothing**2)
+        try:
+            return UnivariateSpline(self.x, self._given, k=5, s=len(self.x) * self.smoothing**2)
+        except ValueError as error:
+            raise InputError(f"chute: no spline goes through these points: {error}; spread them more evenly") from None
 
     def _along(self, spline: UnivariateSpline) -> tuple[float, Callable[[Array], Array]]:
         """Where the points end along the chute, and how the x of the points follows from a place along it."""

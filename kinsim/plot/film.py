@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from ..balance.stages import Array
 from ..film.reel import Reel, equilibrium, visible
-from .bed import Bed, curved
+from ..model.ground import Smooth
+from ..watch.lift import normal_force
+from .bed import LIFTED, Bed, curved
 
 SIZES = {True: (9.0, 4.4), False: (5.6, 4.4)}
 """Width and height in inches of letters 10 points high, with a density and without."""
@@ -83,10 +85,18 @@ class _OnTheBed:
         for row in (0, -1):  # so that the axes leave room for both
             axes.update_datalim(self._bed.outline(self._h[row]))
         self._mass = axes.fill(*self._bed.outline(self._h[0]).T, color=OWN["color"], alpha=0.6, linewidth=0.8)[0]
-        self.moving = [self._mass]
+        self._ground, self._q = reel.scene.ground, self._h * reel.u
+        self._off = axes.plot([], [], label="off the ground", **LIFTED)[0]
+        self.moving = [self._mass, self._off]
+        if isinstance(self._ground, Smooth) and self._ground.bends:
+            axes.legend(loc="upper right", frameon=False, fontsize="small")
 
     def show(self, row: int) -> None:
         self._mass.set_xy(self._bed.outline(self._h[row]))
+        if isinstance(self._ground, Smooth):
+            thick, normal = normal_force(self._ground, self._h[row], self._q[row])
+            off = np.concatenate([[False], thick & (normal < 0.0)]) | np.concatenate([thick & (normal < 0.0), [False]])
+            self._off.set_data(np.where(off, self._bed.across, np.nan), np.where(off, self._bed.down, np.nan))
 
 
 class _Curves:

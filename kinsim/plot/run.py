@@ -84,9 +84,16 @@ def _on_the_bed(run: Run, axes: Any) -> None:
     for row, colour in zip(rows, colormaps["viridis_r"](np.linspace(0.1, 1.0, len(rows))), strict=True):
         axes.fill(*bed.outline(np.maximum(run.h[row], 0.0)).T, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(*bed.surface(np.maximum(run.h[row], 0.0)), color=colour, linewidth=1.0)
-    begin, end = (float(run.entries.get(name, [np.nan])[-1]) for name in ("lifted_from", "lifted_to"))
+    seen = ("lifted_from", "lifted_to", "lifted_since")
+    begin, end, since = (float(run.entries.get(name, [np.nan])[-1]) for name in seen)
     if np.isfinite(begin):
-        bed.mark(axes, run.scene, begin, end, "the mass left the ground here")
+        bed.mark(
+            axes,
+            run.scene,
+            begin,
+            end,
+            f"left the ground here, first at t = {since:.3g}",
+        )
         axes.legend(loc="upper right", frameon=False)
     axes.set_title(f"on the chute, {bed.words}", fontsize="medium")
 

@@ -93,7 +93,7 @@ def advise(scene: Scene, clock: Fixed | Courant, **options: Any) -> Advice:
         raise InputError(f"advise: the coarse run stops: {found['verdict'].item()}; take a scene that comes to its end")
     t, h, u = (found[f"history_{name}"].to_numpy() for name in ("t", "h", "u"))
     apart = float(np.abs(np.diff(both["h"].to_numpy(), axis=0)).sum()) * coarse.cells.dx / mass_of(coarse)
-    wet, c = h > 0.0, np.sqrt(2.0 * scene.beta * h)
+    wet, c = h > 0.0, np.sqrt(2.0 * coarse.beta * h)
     moves = np.abs(u) > STILL * np.abs(u).max() if u.any() else np.zeros(u.shape, bool)
     seen = Advice(
         (), t, np.where(wet, u - c, np.inf).min(axis=1), np.where(wet, u + c, -np.inf).max(axis=1),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..balance.stages import Array
 from ..checkpoint import Kept
@@ -58,9 +59,7 @@ class Lift(Grounded):
         self._least = math.inf
 
     def note(self, t: float, h: Array, q: Array) -> bool:
-        thick = h > THIN * h.max()
-        u = np.divide(q, h, out=np.zeros_like(q), where=thick)
-        normal = self._ground.cos + self._ground.bend * u * u
+        thick, normal = normal_force(self._ground, h, q)
         self._least = min(self._least, float(normal[thick].min(initial=math.inf)))
         up = np.flatnonzero(thick & (normal < 0.0))
         if not up.size:
@@ -82,9 +81,10 @@ class Lift(Grounded):
         if math.isnan(self._since):
             return ""
         where = f"x = {self._from:.4g}" + (f" to {self._to:.4g}" if self._to > self._from else "")
+        many = "1 cell" if self._so_far == 1 else f"up to {self._so_far} cells"
         return (
-            f"up to {self._so_far} cells left the ground, first at t = {self._since:.4g}, in {where}, where friction "
-            f"was off (least normal force {self._least:.3g})"
+            f"{many} left the ground, first at t = {self._since:.4g}, in {where}, where no friction acts (least normal "
+            f"force {self._least:.3g})"
         )
 
     def kept(self) -> Kept:
@@ -94,6 +94,13 @@ class Lift(Grounded):
     def restore(self, kept: Kept) -> None:
         most, so_far, self._from, self._to, self._since, self._least = kept["seen"].tolist()
         self._most, self._so_far = int(most), int(so_far)
+
+
+def normal_force(ground: Smooth, h: Array, q: Array) -> tuple[NDArray[np.bool_], Array]:
+    """Which cells count, and cos zeta + eta kappa u^2 in them, of states of shape (nx,)."""
+    thick = h > THIN * h.max()
+    u = np.divide(q, h, out=np.zeros_like(q), where=thick)
+    return thick, ground.cos + ground.bend * u * u
 
 
 def lift_of(scene: Scene) -> Grounded:
