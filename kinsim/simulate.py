@@ -152,6 +152,7 @@ class Loop:
         self.times: list[float] = []
         self.states: list[tuple[Array, Array]] = []
         self.still = 0
+        self.foreseen = 0
         self.began = time.perf_counter()
         self.fastest = Survey.of(self.h, self.q, scene.beta).fastest
         self.first_reach = self.reached = 0.0
@@ -276,6 +277,7 @@ class Loop:
             self.ledger.note(look, courant, books, awake.at.density if awake.at else None)
             self.fastest = look.fastest
             if last or self.step % self.save_every == 0:
+                self._ask_for_rows()
                 self.ledger.save(self.h, self.q)
                 self._save()
             if lifted:
@@ -429,13 +431,16 @@ class Loop:
     def _foresee(self) -> None:
         """Refuse a run whose rows will not fit; with a `Courant` clock as its first step lets foresee."""
         steps = self.clock.steps_at(max(self.fastest, self.falling), self.scene.cells.dx)
-        kept = math.ceil(steps / self.save_every) + 1
+        kept = self.foreseen = math.ceil(steps / self.save_every) + 1
         require_history(kept, steps, self.h.size, f"{kept} rows and {steps} steps")
 
-    def _save(self) -> None:
-        if len(self.states) & (len(self.states) - 1) == 0:  # twice as many may come before the next look
-            more = len(self.states)
+    def _ask_for_rows(self) -> None:
+        """Refuse rows that nobody foresaw and that will not fit."""
+        more = len(self.states)
+        if more > self.foreseen and more & (more - 1) == 0:  # twice as many may come before the next look
             require_history(more, self.step, self.h.size, f"{more} rows more")
+
+    def _save(self) -> None:
         self.times.append(self.t)
         self.states.append((self.h.copy(), self.q.copy()))
         if self.causes:

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import sys
 from types import SimpleNamespace
 
+import numpy as np
 import psutil
 import pytest
 
-from kinsim import Cells, Fixed, InputError, Kinetic, Macroscopic, Uniform, load_scene, simulate
+from kinsim import (
+    Cells,
+    Courant,
+    Expression,
+    Fixed,
+    InputError,
+    Kinetic,
+    Macroscopic,
+    Scene,
+    Uniform,
+    load_scene,
+    simulate,
+)  # fmt: skip
 
 
 def test_cells_beyond_memory_are_refused() -> None:
@@ -24,3 +38,24 @@ def test_a_density_beyond_memory_is_refused(monkeypatch: pytest.MonkeyPatch) -> 
         with pytest.raises(InputError, match=f"{entries} densities of 320 x 1000000 entries would take"):
             simulate(scene, method, Fixed(1e-3, 2))
     assert simulate(scene, Macroscopic(), Fixed(1e-3, 2)).steps == 2
+
+
+def test_memory_that_gets_short_costs_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that takes more rows than foreseen is refused where they no longer fit, and keeps its last good state."""
+    dam = Scene(Cells(0.0, 1.0, 40), Expression("1e-6 + 1e3*(x < 0.1)"))
+    whole = simulate(dam, Macroscopic(), Courant(0.9, 0.02), save_every=1)
+    asked: list[int] = []
+
+    def short(rows: int, steps: int, cells: int, what: str) -> None:
+        asked.append(rows)
+        if len(asked) > 1:
+            raise InputError(f"{what} would take 1e99 bytes, 1 GiB are free; take fewer")
+
+    monkeypatch.setattr(Courant, "steps_at", lambda *asked: 3)
+    monkeypatch.setattr(sys.modules["kinsim.simulate"], "require_history", short)
+    run = simulate(dam, Macroscopic(), Courant(0.9, 0.02), save_every=1)
+    assert len(asked) == 2
+    assert run.verdict.kind == "refused"
+    assert 3 <= run.steps < whole.steps
+    np.testing.assert_array_equal(run.h[-1], whole.h[run.steps])
+    assert len(run.t) == run.steps + 1 == len(run.entries["mass"])

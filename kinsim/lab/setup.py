@@ -19,7 +19,7 @@ from ..model.heap import Blocks, Table
 from ..overview import first_courant
 from ..read import SceneFile, check, parse_keys, read_keys, take_method
 from ..simulate import ROUNDING
-from ..stepper import largest_courant
+from ..stepper import largest_courant, make_scheme
 
 COURANT = 0.45
 """Of built-in scenes in the lab: below the limit of each scheme and order; the paper's steps take minutes to watch."""
@@ -103,6 +103,7 @@ class Setup:
         """Why it cannot be run, in a sentence, or nothing."""
         try:
             file = self.file
+            make_scheme(file.method, file.scene)
         except (InputError, MemoryError) as error:
             return str(error) or "not enough memory; take fewer cells or velocity nodes"
         limit, courant = largest_courant(file.method), first_courant(file)
