@@ -53,14 +53,18 @@ class Budget:
     @property
     def words(self) -> str:
         """The budget in sentences."""
+        if self.dx == 0.0:
+            return f"The cells make no error that the velocity nodes, with {self.velocity:.3g}, could be compared to."
         nodes = f"The velocity nodes contribute {self._percent(self.velocity)} of the dx error"
         remap = f", the remap of the force {self._percent(self.force)}" if np.isfinite(self.force) else ""
         change = "larger" if self.shorter > self.closed else "smaller"
         halved = f"half the step would make the whole {change}, {self.shorter:.3g} for {self.closed:.3g}"
+        if self.shorter == self.closed:
+            halved = "half the step would change nothing"
         return f"{nodes}{remap}, the steps {self._percent(self.dt)}; {halved}. {self.advice}".rstrip()
 
     def _percent(self, error: float) -> str:
-        return _percent(error / self.dx if self.dx > 0.0 else np.inf)
+        return _percent(error / self.dx)
 
 
 def budget(scene: Scene, method: Kinetic | Macroscopic, clock: Fixed | Courant, **options: Any) -> Budget:

@@ -82,5 +82,7 @@ def mass_of(scene: Scene) -> float:
     """
     mass = float(scene.initial()[0].sum() * scene.cells.dx)
     if not mass > 0.0:
-        raise InputError("trade: there is no mass in the scene; take a heap that is not empty")
+        raise InputError(
+            "errors are measured in the mass at the start, and there is none; take a heap that is not empty"
+        )
     return mass

@@ -197,7 +197,8 @@ def seconds_per_step(scene: Scene, methods: Sequence[Kinetic], **options: Any) -
     }
     found = study(scene, methods[0], over["clock"][0], over, paired=True, repeats=ROUNDS, **options)
     whole, part = (found["wall_time"] / found["steps"]).min("repeat").to_numpy().reshape(2, -1)
-    cells = np.clip((whole - part) / (1.0 - few.cells.count / scene.cells.count), 0.0, whole)
+    saved = 1.0 - few.cells.count / scene.cells.count
+    cells = np.clip((whole - part) / saved, 0.0, whole) if saved > 0.0 else np.zeros_like(whole)
     timed = dict(zip(telling, np.stack([whole - cells, cells], axis=1), strict=True))
     out: dict[Kinetic, Cost] = {}
     for of in kinds.values():
