@@ -10,6 +10,7 @@ import re
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from kinsim.lab.play import Play
 from kinsim.lab.setup import Setup
 from kinsim.lab.view.widgets import PAUSE
 
-FIRST = 60_000
+FIRST = 240_000
 """Milliseconds for what may have to compile kernels."""
 
 expect.set_options(timeout=30_000)
@@ -33,10 +34,21 @@ PICTURE = """() => {
 }"""
 
 
-@pytest.fixture(scope="session")
-def server():
-    """The command as a user types it; ended as a user ends it."""
-    words = [sys.executable, "-m", "kinsim", "lab", "silo", "--no-browser"]
+SLOW = """
+import sys, time
+from kinsim.lab import prepare
+from kinsim.__main__ import main
+make = prepare.make
+prepare.make = lambda file: (time.sleep(4), make(file))[1]
+sys.argv[1:] = ["lab", "silo", "--no-browser"]
+main()
+"""
+"""The same, as on a machine where kernels have to be compiled first."""
+
+
+@contextmanager
+def serving(*words: str):
+    """The address of a command that is ended as a user ends it."""
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as running:
         try:
             line = running.stdout.readline()
@@ -45,6 +57,13 @@ def server():
             running.send_signal(signal.SIGINT)
             out, err = running.communicate(timeout=60)
     assert (running.returncode, out, err) == (0, "kinsim lab: ended\n", "")
+
+
+@pytest.fixture(scope="session")
+def server():
+    """The command as a user types it."""
+    with serving(sys.executable, "-m", "kinsim", "lab", "silo", "--no-browser") as address:
+        yield address
 
 
 @pytest.fixture(scope="session")
@@ -259,3 +278,16 @@ def test_a_click_chooses_the_cell(page):
     page.mouse.click(chart["x"] + 0.7 * chart["width"], chart["y"] + 0.5 * chart["height"])
     expect(page.locator(".cut-title h2")).not_to_have_text(before)
     assert re.search(r"Cut at x = [1-7]", page.locator(".cut-title h2").inner_text())
+
+
+def test_a_page_whose_run_is_still_being_made_says_so(chromium):
+    with serving(sys.executable, "-c", SLOW) as address:
+        page = chromium.new_page()
+        page.goto(address)
+        expect(page.locator(".told")).to_contain_text("Compiling the kernels of this method")
+        assert page.locator(".now").count() == 0
+        expect(page.locator(".now")).to_contain_text("step 0")
+        expect(page.locator(".told .say")).to_have_count(0)
+        press(page, "one")
+        expect(page.locator(".now")).to_contain_text("step 1")
+        page.close()

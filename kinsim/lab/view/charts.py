@@ -105,8 +105,9 @@ class Slice:
     """The cut f(xi) beside M, and the two half-ranges at the face shaded."""
 
     def __init__(self) -> None:
-        self._sides = [ColumnDataSource({name: [] for name in ("xi", "zero", "top")}) for _ in range(2)]
-        self._steps = ColumnDataSource({"xi": [], "f": []})
+        none = [0.0, 0.0]  # for a browser draws steps of no points forever
+        self._sides = [ColumnDataSource({name: none for name in ("xi", "zero", "top")}) for _ in range(2)]
+        self._steps = ColumnDataSource({"xi": none, "f": none})
         self._curve = ColumnDataSource({"xi": [], "M": []})
         self.figure = plain(x_axis_label="particle velocity ξ", y_axis_label="density")
         for source, colour in zip(self._sides, (AMBER, SKY), strict=True):

@@ -105,7 +105,7 @@ class Page:
         make_aside(setup.file, lambda made: self._doc.add_next_tick_callback(lambda: self._ready(setup, made)))
 
     def _still_busy(self) -> None:
-        if self._busy and not self._gone:
+        if self._busy and not self._gone and not self._painter.said:
             self._painter.say(COMPILING, "busy")
 
     def _ready(self, setup: Setup, made: Future[Play]) -> None:
