@@ -11,16 +11,20 @@ import hashlib
 import os
 import tempfile
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numba
 import platformdirs
+from numba import types
 from numba.core.caching import CompileResultCacheImpl, FunctionCache, _CacheLocator
 from numba.core.registry import CPUDispatcher
+from numba.extending import overload
 from numba.np import linalg
+
+from .local import at, left, right, varies
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -53,7 +57,7 @@ def source_stamp() -> str:
     digest = hashlib.sha256(numba.__version__.encode())
     for path in sorted(PACKAGE.rglob("*.py")):
         text = path.read_bytes()
-        if b"@kernel" in text or b"overload(" in text:
+        if b"@kernel" in text:
             digest.update(path.relative_to(PACKAGE).as_posix().encode() + b"\0" + text)
     return digest.hexdigest()
 
@@ -142,3 +146,27 @@ def _kept(njit: Callable[[F], Any], function: F) -> F:
     dispatcher = njit(function)
     dispatcher._cache = _Cache(function)  # type: ignore[no-untyped-call]
     return dispatcher  # type: ignore[no-any-return]
+
+
+def _in_kernels(question: Callable[..., Any], answer: Callable[..., Any]) -> None:
+    overload(question, jit_options={"error_model": "numpy", "forceinline": True}, strict=False)(answer)
+
+
+@partial(_in_kernels, at)
+def _at(value: Any, i: Any) -> Any:
+    return (lambda value, i: value[i]) if isinstance(value, types.Array) else (lambda value, i: value)
+
+
+@partial(_in_kernels, left)
+def _left(value: Any) -> Any:
+    return (lambda value: value[0]) if isinstance(value, types.BaseTuple) else (lambda value: value)
+
+
+@partial(_in_kernels, right)
+def _right(value: Any) -> Any:
+    return (lambda value: value[1]) if isinstance(value, types.BaseTuple) else (lambda value: value)
+
+
+@partial(_in_kernels, varies)
+def _varies(value: Any) -> Any:
+    return (lambda value: True) if isinstance(value, types.Array) else (lambda value: False)

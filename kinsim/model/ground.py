@@ -20,7 +20,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel
 from ..local import Local, Sides
 from .boundary import Boundary, Inflow, ends
 from .cells import Cells
@@ -162,6 +161,8 @@ class Smooth:
         """
         if not self.bends:
             return self.pull, self.hold, self.beta, self.dx
+        from ..balance.brake import brake  # scenes are made without numba
+
         brake(u, dt, self.grip, self.cos, self.bend, self.most)
         return self.pull, self.most, self.beta, self.dx
 
@@ -190,12 +191,3 @@ class Smooth:
 
 
 Ground = Flat | Smooth
-
-
-@kernel
-def brake(u: Array, dt: float, grip: float, cos: Array, bend: Array, most: Array) -> None:
-    """The most friction that a step of dt can bring to bear; see `Smooth.cells`."""
-    for i in range(u.size):
-        a = dt * grip * max(bend[i], 0.0) * abs(u[i])
-        share = (1.0 - 0.81 / (a + 0.8)) / a if a > 0.1 else 1.0
-        most[i] = grip * max(cos[i] + bend[i] * u[i] * u[i] * share, 0.0)
