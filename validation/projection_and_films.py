@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 from claims import Chapter, run
-from laboratory.measures import make_case, unbooked_drift
+from laboratory.measures import made_drift, make_case, unbooked_drift
 from laboratory.pictures import COLOURS
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -110,7 +110,7 @@ def two_readings(chapter: Chapter) -> None:
         drifts = {}
         for projection in PROJECTIONS:
             method = Kinetic(3, Uniform(64, 1.1 * case.bound), name, projection=projection)
-            drifts[projection] = unbooked_drift(simulate(case.scene, method, case.clock, case.clock.steps))
+            drifts[projection] = made_drift(simulate(case.scene, method, case.clock, case.clock.steps))
         rows.append([name, *drifts.values()])
         chapter.claim(f"silo, {name}, flux differences: mass drift", drifts["flux-difference"], high=250 * EPS)
         if name == "sampled":
