@@ -36,8 +36,13 @@ class Fixed:
     kind: Literal["fixed"] = kind("fixed")
 
     def __post_init__(self) -> None:
-        if not self.steps * self.dt < math.inf:
+        if not self.end < math.inf:
             raise ValueError(f"{self.steps} steps of dt = {self.dt:g} have no finite end; take fewer or shorter ones")
+
+    @property
+    def end(self) -> float:
+        """The time after the last step."""
+        return self.steps * self.dt
 
     def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
         """dt, `steps` times."""

@@ -17,6 +17,7 @@ from pydantic import TypeAdapter
 
 from .balance.stages import Array
 from .clock import Clock, Replay
+from .mean import mean_velocity
 from .method import Kinetic, Macroscopic
 from .scene import Scene
 from .store import write_netcdf
@@ -100,7 +101,7 @@ class Run:
     @np.errstate(over="ignore")
     def u(self) -> Array:
         """Velocity q/h, 0 where dry, shape (nt, nx)."""
-        return np.divide(self.q, self.h, out=np.zeros_like(self.q), where=self.h > 0)
+        return mean_velocity(self.q, self.h)
 
     @property
     def steps(self) -> int:

@@ -12,17 +12,14 @@ from pydantic import Field
 
 from .errors import InputError
 from .local import Local
+from .mean import mean_velocity
 from .model.boundary import Boundary, streams
 from .model.cells import TINY, Cells
 from .model.chute import Chute, ConstantSlope
 from .model.friction import Friction, Frictionless
 from .model.ground import Flat, Ground, Smooth
 from .model.heap import Heap
-from .model.slope import check
 from .value import Number, value
-
-MEET = 1e-6
-"""Slopes at the ends of a periodic domain may differ by so much, in radians."""
 
 
 @value
@@ -52,14 +49,6 @@ class Scene:
     title: str = ""
 
     def __post_init__(self) -> None:
-        if not isinstance(self.chute, ConstantSlope):
-            check(self.chute.zeta, np.concatenate([self.cells.faces, self.cells.x]))
-            first, last = self.chute.zeta(self.cells.faces[[0, -1]])[0]
-            if self.boundary == "periodic" and abs(first - last) > MEET:
-                raise InputError(
-                    f"chute: zeta is {first:.6g} at the left end and {last:.6g} at the right one, which meet in a "
-                    "periodic domain; give a periodic zeta, or another boundary"
-                )
         least, most = float(np.min(self.beta)), float(np.max(self.beta))
         if not TINY <= least <= most < math.inf:
             raise InputError(f"beta = epsilon k cos zeta = {least:g} is out of range; change epsilon or k")
@@ -102,7 +91,7 @@ class Scene:
     def fastest(self) -> float:
         """The fastest particle at the start, max(|u| + c), c = sqrt(2 beta h), streams at the ends included."""
         h, q = self.initial()
-        u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
+        u = mean_velocity(q, h)
         own = float(np.max(np.abs(u) + np.sqrt(2.0 * self.beta * h)))
         widest = float(np.max(self.beta))
         coming = [abs(end.u) + math.sqrt(2.0 * widest * end.h) for end in streams(self.boundary) if end.h > 0.0]

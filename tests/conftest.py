@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
+from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -55,6 +58,17 @@ SCENES: dict[str, tuple[Scene, Fixed]] = {
 def rng() -> np.random.Generator:
     """Random numbers, the same in every run."""
     return np.random.default_rng(20240229)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Any]:
+    """The Chromium that `.ci/browser.py` found, for tests in the browser alone."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=os.environ["KINSIM_CHROMIUM"], args=["--no-sandbox"])
+        yield browser
+        browser.close()
 
 
 def random_states(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -5,7 +5,6 @@ What the page shows is read from the browser, and judged by `kinsim.step`, `simu
 
 from __future__ import annotations
 
-import os
 import re
 import signal
 import subprocess
@@ -14,7 +13,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from playwright.sync_api import expect, sync_playwright
+from playwright.sync_api import expect
 
 from kinsim import load_scene, simulate, step
 from kinsim.lab.play import Play
@@ -64,15 +63,6 @@ def server():
     """The command as a user types it."""
     with serving(sys.executable, "-m", "kinsim", "lab", "silo", "--no-browser") as address:
         yield address
-
-
-@pytest.fixture(scope="session")
-def chromium():
-    path = os.environ["KINSIM_CHROMIUM"]
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 @pytest.fixture(scope="session")

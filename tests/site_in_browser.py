@@ -5,11 +5,9 @@ Every page asks for files of its own only, sets all its formulas, and complains 
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import sync_playwright
 
 SITE = Path(__file__).parents[1] / "out" / "docs"
 PAGES = sorted(SITE.rglob("*.html"))
@@ -18,15 +16,6 @@ SET = """async () => {
   if (window.MathJax?.startup) await MathJax.startup.promise
   return true
 }"""
-
-
-@pytest.fixture(scope="session")
-def chromium():
-    path = os.environ["KINSIM_CHROMIUM"]
-    with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 def test_there_are_pages():

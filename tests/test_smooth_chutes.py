@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from laboratory.chutes import admissible, wavy
 
 import kinsim
 from kinsim import (
@@ -20,7 +21,6 @@ from kinsim import (
     Crest,
     Fitted,
     Fixed,
-    Frictionless,
     Inflow,
     Kinetic,
     Macroscopic,
@@ -46,18 +46,6 @@ METHODS = {
 }
 EVERY = pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
 
-WAVES = SlopeFormula("0.1 + 0.35*sin(x)", 0.5)
-"""Between -14 and 26 degrees, periodic over 2 pi."""
-
-
-def waves(h: np.ndarray, u: np.ndarray | None = None, *, delta: float = 0.5, eta: float = 0.0, **keys: object) -> Scene:
-    """A state on a wavy chute."""
-    cells = Cells(0.0, 2.0 * math.pi, h.size)
-    friction = Coulomb(delta) if delta else Frictionless()
-    return Scene(
-        cells, Profile(h, u), SmoothChute(WAVES, eta), friction, **{"boundary": "wall", "epsilon": 0.4, **keys}
-    )
-
 
 def wild(dice: np.random.Generator, nx: int = 60) -> tuple[np.ndarray, np.ndarray]:
     """Heights over many decades, with dry cells, and velocities of both signs."""
@@ -74,7 +62,7 @@ def limit(method: Kinetic | Macroscopic) -> float:
 def test_mass_stays_and_no_height_is_negative(method: Kinetic | Macroscopic, boundary: str) -> None:
     for seed in range(3):
         dice = np.random.default_rng(seed)
-        scene = waves(*wild(dice), eta=[0.0, 1.0, 1e4][seed], boundary=boundary)
+        scene = wavy(*wild(dice), eta=[0.0, 1.0, 1e4][seed], boundary=boundary)
         run = kinsim.simulate(scene, method, Courant(limit(method), 0.3), save_every=20)
         assert run.verdict.kind == "finished", run.verdict
         before, after = (math.fsum(h) for h in run.h[[0, -1]])  # the books would take a leak of a wall for an inflow
@@ -86,33 +74,9 @@ def test_mass_stays_and_no_height_is_negative(method: Kinetic | Macroscopic, bou
 
 @EVERY
 def test_density_is_not_negative(method: Kinetic | Macroscopic) -> None:
-    scene = waves(*wild(np.random.default_rng(4)), eta=1.0)
+    scene = wavy(*wild(np.random.default_rng(4)), eta=1.0)
     run = kinsim.simulate(scene, method, Courant(limit(method), 0.2))
     assert run.entries.get("f_min", np.zeros(1))[1:].min(initial=0.0) >= 0.0
-
-
-def admissible(scene: Scene, dice: np.random.Generator, first: float, share: float = 1.0) -> np.ndarray:
-    """Heights whose every jump friction balances, face by face, with a random share of what it can hold.
-
-    beta_f (h' - h) + (beta' - beta)(h + h')/4 = dx (sin zeta_f - theta R_f), |theta| <= share, solved for h'.
-    """
-    x, dx = scene.cells.x, scene.cells.dx
-    faces = 0.5 * (x[1:] + x[:-1])
-    zeta, at = scene.chute.zeta(x)[0], scene.chute.zeta(faces)[0]
-    beta = scene.epsilon * scene.k * np.cos(zeta)
-    h = [first]
-    for i in range(x.size - 1):
-        R = np.cos(at[i]) * math.tan(scene.friction.delta)
-        for _ in range(40):
-            slope = math.sin(at[i]) - share * dice.uniform(-1.0, 1.0) * R
-            middle, quarter = 0.5 * (beta[i] + beta[i + 1]), 0.25 * (beta[i + 1] - beta[i])
-            above = (h[-1] * (middle - quarter) + slope * dx) / (middle + quarter)
-            if above >= 0.0:
-                break
-        else:
-            above = 0.0
-        h.append(above if h[-1] > 0.0 or dice.random() < 0.2 else 0.0)
-    return np.array(h)
 
 
 @EVERY
@@ -120,8 +84,8 @@ def test_admissible_masses_stay_bit_for_bit(method: Kinetic | Macroscopic) -> No
     """Wet and dry, on a chute whose slope stays below the angle of friction everywhere."""
     for seed in range(4):
         dice = np.random.default_rng(seed)
-        blank = waves(np.zeros(80), delta=0.6)
-        h = admissible(blank, dice, [0.0, 0.3, 1.0, 2.0][seed])
+        blank = wavy(np.zeros(80), delta=0.6)
+        h = admissible(blank, dice, [0.0, 0.3, 1.0, 2.0][seed], 1.0)
         assert (h > 0.0).any()
         scene = replace(blank, heap=Profile(h))
         run = kinsim.simulate(scene, method, Fixed(0.01, 300))
@@ -154,7 +118,7 @@ def test_what_barely_moves_sends_no_mass(method: Kinetic | Macroscopic) -> None:
 
 @EVERY
 def test_too_steep_a_face_starts(method: Kinetic | Macroscopic) -> None:
-    scene = waves(np.zeros(80), delta=0.6)
+    scene = wavy(np.zeros(80), delta=0.6)
     h = admissible(scene, np.random.default_rng(3), 1.5, 0.9)
     h[40:] += 1.2 * 2.0 * scene.cells.dx * math.tan(0.6) / 0.4
     run = kinsim.simulate(replace(scene, heap=Profile(h)), method, Fixed(0.005, 20))
@@ -167,7 +131,7 @@ def test_constant_slope_is_a_smooth_chute(name: str, boundary: str) -> None:
     """A formula without x has the same ground but for the cosine of another library: one digit."""
     h, u = wild(np.random.default_rng(7))
     h = np.maximum(h, 1e-3)
-    plane = waves(h, u, boundary=boundary, delta=0.4)
+    plane = wavy(h, u, boundary=boundary, delta=0.4)
     plane = replace(plane, chute=ConstantSlope(0.3))
     other = replace(plane, chute=SmoothChute(SlopeFormula("0.3"), 1.0))
     one, two = (kinsim.simulate(scene, METHODS[name], Fixed(0.004, 50)) for scene in (plane, other))
@@ -236,7 +200,7 @@ def test_stiff_friction_of_a_bend_leaves_what_its_equation_leaves(a: float) -> N
 
 def test_kinetic_and_closed_form_agree_to_second_order_in_the_velocity_cell() -> None:
     x = Cells(0.0, 2.0 * math.pi, 80).x
-    scene = waves(1.0 + 0.3 * np.sin(x), 0.2 * np.cos(x), eta=1.0, boundary="periodic")
+    scene = wavy(1.0 + 0.3 * np.sin(x), 0.2 * np.cos(x), eta=1.0, boundary="periodic")
     clock = Fixed(0.01, 40)
     for order in (1, 2):
         exact = kinsim.simulate(scene, Macroscopic(order=order), clock)

@@ -24,6 +24,7 @@ from dataclasses import replace
 
 import numpy as np
 from claims import Chapter, run
+from laboratory.chutes import admissible, wavy
 from laboratory.pictures import COLOURS
 from matplotlib.figure import Figure
 
@@ -58,7 +59,6 @@ ROOMS = {
     "64 nodes": Kinetic(velocity=Uniform(64)), "64 nodes, reflect": Kinetic(velocity=Uniform(64), statics="reflect"),
     "64 nodes, order 2": Kinetic(velocity=Uniform(64), order=2),
 }  # fmt: skip
-WAVES = SlopeFormula("0.1 + 0.35*sin(x)", 0.5)
 
 
 def main(chapter: Chapter) -> None:
@@ -77,12 +77,6 @@ def main(chapter: Chapter) -> None:
 def limit(method: Kinetic | Macroscopic) -> float:
     """A Courant number just below the largest one."""
     return 0.48 if method.order == 2 else 0.999
-
-
-def wavy(h: Array, u: Array | None = None, eta: float = 0.0, boundary: str = "wall", delta: float = 0.5) -> Scene:
-    """A mass on a ring or between walls, on slopes between -14 and 26 degrees."""
-    chute = SmoothChute(WAVES, eta)
-    return Scene(Cells(0.0, 2.0 * math.pi, h.size), Profile(h, u), chute, Coulomb(delta), boundary, 0.4)
 
 
 def conserved(chapter: Chapter) -> None:
@@ -111,22 +105,6 @@ def conserved(chapter: Chapter) -> None:
         ("", "mass drift", "least h", "least f"),
         rows,
     )
-
-
-def admissible(scene: Scene, dice: np.random.Generator, first: float, share: float) -> Array:
-    """Heights whose every jump friction balances with a random part of `share` of what it can give."""
-    x, dx = scene.cells.x, scene.cells.dx
-    at = scene.chute.zeta(0.5 * (x[1:] + x[:-1]))[0]
-    beta = 0.4 * np.cos(scene.chute.zeta(x)[0])
-    h = [first]
-    for i in range(x.size - 1):
-        R = math.cos(at[i]) * math.tan(scene.friction.delta)
-        middle, quarter = 0.5 * (beta[i] + beta[i + 1]), 0.25 * (beta[i + 1] - beta[i])
-        slopes = math.sin(at[i]) - share * R * dice.uniform(-1.0, 1.0, 40)
-        above = (h[-1] * (middle - quarter) + slopes * dx) / (middle + quarter)
-        fits = above[above >= 0.0]
-        h.append(fits[0] if fits.size and (h[-1] > 0.0 or dice.random() < 0.2) else 0.0)
-    return np.array(h)
 
 
 def resting(chapter: Chapter) -> None:

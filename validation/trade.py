@@ -24,7 +24,7 @@ from rich.progress import track
 from kinsim import Kinetic, budget, load_scene, trade
 from kinsim.plot import draw_trade
 from kinsim.trades.family import NUMBER
-from kinsim.trades.pace import end_of, steady
+from kinsim.trades.pace import steady
 
 SCENES = ("riemann", "silo", "silo-incline", "parabola", "sine")
 SMALL = ("closed form", "cell average", "sampled", "fitted", "dx", "order")
@@ -48,7 +48,7 @@ def main(chapter: Chapter) -> None:
         same = found.isel(member=np.flatnonzero((found["cells"] == scene.cells.count) & (found["courant"] == NUMBER)))
         chapter.table(f"{name}: all members on {scene.cells.count} cells, first order", HEADS, rows(same))
         chapter.figure(draw_trade(found), name, f"{name}: cost against error.")
-        pace = steady(scene, Kinetic(), NUMBER, end_of(clock))
+        pace = steady(scene, Kinetic(), NUMBER, clock.end)
         if chapter.full:
             for method in BUDGETS:
                 budgets.append([name, method.velocity.words, budget(scene, method, pace).words])

@@ -26,7 +26,7 @@ from matplotlib.figure import Figure
 from kinsim import Fitted, Fixed, InputError, Kinetic, Run, Scene, Uniform, choose, load_scene, simulate
 from kinsim.stepper import largest_courant
 from kinsim.trades.choose import velocity_error
-from kinsim.trades.pace import end_of, steady
+from kinsim.trades.pace import steady
 from kinsim.trades.pilot import Pilots, seconds_per_step
 
 FAMILY = {
@@ -89,7 +89,7 @@ def scenes(full: bool) -> Iterator[tuple[str, Scene, float]]:
     names = ("riemann", "parabola", "silo", "silo-incline", "sine")
     for name in names if full else names[:2]:
         scene, _, clock = load_scene(name)
-        yield name, scene, end_of(clock)
+        yield name, scene, clock.end
     rng = np.random.default_rng(7)
     for number in range(20 if full else 2):
         yield f"random {number + 1}", *random_scene(rng, 240)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..balance.stages import Array
+from ..measure.entropy import of_state
 from ..watch.causes import STAGES
 from .play import Play
 
@@ -62,9 +63,8 @@ class Ledger:
 
     def _of(self, h: Array, q: Array) -> Array:
         """Integrals over x of h, q and q^2/(2h) + beta h^2/2."""
-        work = np.divide(q * q, h, out=np.zeros_like(q), where=h > 0.0)
         scene = self._play.scene
-        sums = np.array([h.sum(), q.sum(), (0.5 * work + 0.5 * scene.beta * h * h).sum()])
+        sums = np.array([h.sum(), q.sum(), of_state(h, q, scene.beta).sum()])
         return np.asarray(scene.cells.dx * sums)
 
 

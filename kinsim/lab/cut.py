@@ -11,6 +11,7 @@ import numpy as np
 
 from .. import printed
 from ..balance.stages import Array
+from ..film.reel import equilibrium
 from ..kinetic.equilibrium import EQUILIBRIA
 from ..kinetic.velocity import Grid
 from ..local import at, varies
@@ -88,11 +89,11 @@ def cut_at(play: Play, moment: Moment, cell: int, states: FaceStates = "upwind")
     rows = play.face_rows(h[:1], u[:1], h[1:], u[1:], sides)
     edges: Array = grid.dxi * (np.arange(grid.count + 1.0) - grid.half)
     curve = np.linspace(edges[0], edges[-1], LINE)
-    own, mean = at(scene.beta, cell), np.nan_to_num(moment.u[cell])
-    square = 2.0 * own * max(moment.h[cell], 0.0) - (curve - mean) ** 2
+    here, mean = moment.h[cell : cell + 1], np.nan_to_num(moment.u[cell : cell + 1])
+    M = equilibrium(here, mean, at(scene.beta, cell), curve)[0]
     return Cut(
         cell=cell, x=float(scene.x[cell]), edges=edges + moment.offset[cell], f=moment.f[cell], xi=curve,
-        M=np.sqrt(np.maximum(square, 0.0)) / (math.pi * own), face_x=scene.cells.left + (left + 1) * scene.cells.dx,
+        M=M, face_x=scene.cells.left + (left + 1) * scene.cells.dx,
         face_edges=edges, face=rows[0], halves=_halves(play, rows[0], grid, h, u, beta, states),
     )  # fmt: skip
 

@@ -8,12 +8,12 @@ from typing import Literal, get_args
 import numpy as np
 
 from ..balance.stages import Array
-from ..clock import Courant
 from ..errors import InputError
 from ..exact.of_scene import exact_of
 from ..kinetic.equilibrium import Status
 from ..kinetic.wing import Density
 from ..local import Sides
+from ..mean import mean_velocity
 from ..method import Kinetic, Macroscopic
 from ..model.ground import Flat
 from ..read import SceneFile
@@ -115,8 +115,7 @@ class Play:
     @property
     def end(self) -> float:
         """When the clock ends."""
-        clock = self.file.clock
-        return clock.end if isinstance(clock, Courant) else clock.dt * clock.steps
+        return self.file.clock.end
 
     @np.errstate(all="ignore")
     def advance(self) -> bool:
@@ -147,9 +146,9 @@ class Play:
         loop, now, twin = self.loop, self.loop.stepper.now, self.twin
         stage: Stage = self.stage if self.step and self.verdict is None else "projection"
         h, q, twin_q, offset = loop.h, loop.q, twin.q, np.zeros_like(loop.h)
-        face_h, face_u = h, over(q, h)
+        face_h, face_u = h, mean_velocity(q, h)
         if stage == "projection":
-            f = self.equilibrium(h, over(q, h))
+            f = self.equilibrium(h, mean_velocity(q, h))
         else:
             f = SHOWN[stage](self.density, now)
             face_h, face_u = now.h[1:-1], now.u[1:-1]
@@ -182,11 +181,6 @@ class Play:
         except InputError:  # it is known up to a time only
             return None, None
         return h, np.where(h > 0.0, u, np.nan)
-
-
-def over(q: Array, h: Array) -> Array:
-    """q/h, 0 on dry ground."""
-    return np.divide(q, h, out=np.zeros_like(q), where=h > 0.0)
 
 
 def _seen(q: Array, h: Array) -> Array:

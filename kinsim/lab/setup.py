@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from ..clock import Courant, Fixed
+from ..clock import Fixed
 from ..errors import InputError
 from ..method import Kinetic
 from ..model.friction import Frictionless
@@ -122,7 +122,7 @@ class Setup:
         if key == "clock.number":
             return first_courant(file)
         if key == "clock.end":
-            return file.clock.end if isinstance(file.clock, Courant) else file.clock.dt * file.clock.steps
+            return file.clock.end
         if key == "friction.delta" and isinstance(file.friction, Frictionless):
             return 0.0
         if key.startswith("heap.velocities.") and isinstance(file.heap, Blocks):

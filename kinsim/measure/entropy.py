@@ -15,6 +15,7 @@ import numpy as np
 
 from ..balance.stages import Array
 from ..errors import InputError
+from ..local import Local
 from ..model.ground import Flat
 from ..scene import Scene
 from ..step import Step
@@ -72,7 +73,7 @@ def entropy(scene: Scene, now: Step) -> Entropy:
     )
 
 
-def of_state(h: Array, q: Array, beta: float) -> Array:
+def of_state(h: Array, q: Array, beta: Local) -> Array:
     """q^2/(2 h) + beta h^2/2, 0 where it is dry."""
     return np.divide(q * q, 2.0 * h, out=np.zeros_like(q), where=h > 0) + 0.5 * beta * h * h
 

@@ -20,13 +20,18 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InputError
 from ..local import Local, Sides
 from .boundary import Boundary, Inflow, ends
 from .cells import Cells
 from .chute import Incline, SmoothChute
 from .friction import FrictionLaw
+from .slope import angles
 
 Array = NDArray[np.float64]
+
+MEET = 1e-6
+"""Slopes at the ends of a periodic domain may differ by so much, in radians."""
 
 
 OfFaces = tuple[Local, Local, Local, Array | None, float]
@@ -123,10 +128,19 @@ class Smooth:
 
     @classmethod
     def of(cls, chute: SmoothChute, law: FrictionLaw, scale: float, cells: Cells, boundary: Boundary) -> Smooth:
-        """The ground of `chute` with beta = scale cos zeta."""
-        zeta, rise = chute.zeta(cells.x)
-        face, _ = chute.zeta(cells.faces)
+        """The ground of `chute` with beta = scale cos zeta.
+
+        Raises:
+            InputError: It is too steep, or its ends do not meet in a periodic domain.
+        """
+        face, _ = angles(chute.zeta, cells.faces)
+        zeta, rise = angles(chute.zeta, cells.x)
         wraps = boundary == "periodic"
+        if wraps and abs(face[0] - face[-1]) > MEET:
+            raise InputError(
+                f"chute: zeta is {face[0]:.6g} at the left end and {face[-1]:.6g} at the right one, which meet in a "
+                "periodic domain; give a periodic zeta, or another boundary"
+            )
         if wraps:
             face[-1] = face[0]
         cos = np.cos(zeta)

@@ -98,8 +98,7 @@ class Bowl:
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """zeta and its derivative at `x`."""
-        y = np.tanh((x - self.place) / self.width)
-        return -self.steepest * y, -self.steepest / self.width * (1.0 - y * y)
+        return Crest(self.steepest, -self.steepest, self.place, self.width)(x)
 
 
 @value
@@ -148,15 +147,17 @@ Slope = Annotated[
 ]
 
 
-def check(slope: Slope, x: Array) -> None:
-    """Refuse a slope that is steeper than 80 degrees at one of the places `x`, or no number.
+def angles(slope: Slope, x: Array) -> tuple[Array, Array]:
+    """zeta and its derivative at the places `x`.
 
     Raises:
-        InputError: It is; the message names the place.
+        InputError: It is steeper than 80 degrees at one of them, or no number; the message names the place.
     """
-    for what, values in zip(("zeta", "its derivative"), slope(x), strict=True):
+    found = slope(x)
+    for what, values in zip(("zeta", "its derivative"), found, strict=True):
         bad = ~np.isfinite(values) if what != "zeta" else ~(np.abs(values) <= STEEPEST * (1.0 + 1e-12))
         if bad.any():
             i = int(np.flatnonzero(bad)[0])
             remedy = "chutes are at most 80 degrees (1.396) steep" if what == "zeta" else "give a smooth one"
             raise InputError(f"chute: {what} is {values[i]:.4g} at x = {x[i]:g}; {remedy}")
+    return found

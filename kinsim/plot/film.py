@@ -95,7 +95,8 @@ class _OnTheBed:
         self._mass.set_xy(self._bed.outline(self._h[row]))
         if isinstance(self._ground, Smooth):
             thick, normal = normal_force(self._ground, self._h[row], self._q[row])
-            off = np.concatenate([[False], thick & (normal < 0.0)]) | np.concatenate([thick & (normal < 0.0), [False]])
+            cells = np.pad(thick & (normal < 0.0), 1)
+            off = cells[1:] | cells[:-1]  # the faces of such a cell
             self._off.set_data(np.where(off, self._bed.across, np.nan), np.where(off, self._bed.down, np.nan))
 
 

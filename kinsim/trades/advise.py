@@ -17,7 +17,7 @@ from ..run import ENDED
 from ..scene import Scene
 from ..studies.study import study
 from .judge import mass_of
-from .pace import end_of, finer, steady
+from .pace import finer, steady
 from .pilot import ROUNDS, short_clock
 
 COARSE = 0.25
@@ -84,7 +84,7 @@ def advise(scene: Scene, clock: Fixed | Courant, **options: Any) -> Advice:
     """
     mass_of(scene)
     coarse, method = finer(scene, COARSE), Macroscopic(4)
-    pace = steady(coarse, method, NUMBER, end_of(clock))
+    pace = steady(coarse, method, NUMBER, clock.end)
     every = max(1, pace.steps // ROWS)
     orders = {"method": [method, Macroscopic(4, order=2)]}
     both = study(coarse, method, pace, orders, fields=("h", "u"), save_every=every, **options)

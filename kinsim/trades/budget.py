@@ -17,7 +17,7 @@ from ..scene import Scene
 from ..studies.study import study
 from .choose import candidates
 from .judge import judge, mass_of
-from .pace import end_of, steady, twin_of
+from .pace import steady, twin_of
 from .pilot import Pilots, kind_of, nodes, seconds_per_step
 
 ENOUGH = 0.1
@@ -81,7 +81,7 @@ def budget(scene: Scene, method: Kinetic | Macroscopic, clock: Fixed | Courant, 
     Raises:
         InputError: The scene has no mass, or one of the runs does not come to its end.
     """
-    mass, end, twin = mass_of(scene), end_of(clock), twin_of(method)
+    mass, end, twin = mass_of(scene), clock.end, twin_of(method)
     first = clock if isinstance(clock, Fixed) else steady(scene, method, clock.number, end)
     halves = [replace(first, dt=first.dt / part, steps=first.steps * part) for part in (1, 2, 4)]
     runs: list[tuple[Any, Fixed]] = [(method, first), *((twin, one) for one in halves)]

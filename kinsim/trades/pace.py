@@ -11,6 +11,7 @@ import numpy as np
 
 from ..clock import Courant, Fixed
 from ..errors import InputError
+from ..mean import mean_velocity
 from ..method import Kinetic, Macroscopic
 from ..model.cells import Cells
 from ..model.heap import Profile
@@ -18,11 +19,6 @@ from ..scene import Scene
 from ..simulate import simulate
 from ..stepper import largest_courant
 from ..studies.member import ONCE
-
-
-def end_of(clock: Fixed | Courant) -> float:
-    """The time at which a clock ends."""
-    return clock.end if isinstance(clock, Courant) else clock.steps * clock.dt
 
 
 def twin_of(method: Kinetic | Macroscopic) -> Macroscopic:
@@ -58,7 +54,7 @@ def at_pace(scene: Scene, method: Kinetic | Macroscopic, clock: Fixed | Courant,
     if isinstance(clock, Courant):
         return steady(finer(scene, level), method, clock.number, clock.end)
     steps = max(1, round(clock.steps * finer(scene, level).cells.count / scene.cells.count))
-    return Fixed(end_of(clock) / steps, steps)
+    return Fixed(clock.end / steps, steps)
 
 
 def _averaged(scene: Scene, cells: Cells) -> Profile:
@@ -69,7 +65,7 @@ def _averaged(scene: Scene, cells: Cells) -> Profile:
         * (scene.cells.dx / cells.dx)
         for part, least in zip(scene.initial(), (0.0, -np.inf), strict=True)
     )
-    return Profile(h, np.divide(q, h, out=np.zeros_like(q), where=h > 0.0))
+    return Profile(h, mean_velocity(q, h))
 
 
 def steady(scene: Scene, method: Kinetic | Macroscopic, number: float, end: float) -> Fixed:

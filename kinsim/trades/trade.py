@@ -20,7 +20,7 @@ from ..studies.study import study
 from .family import Choice, chosen
 from .front import knee, pareto
 from .judge import Judge, judge, mass_of
-from .pace import end_of, finer, steady, twin_of, varied
+from .pace import finer, steady, twin_of, varied
 
 if TYPE_CHECKING:
     import xarray
@@ -78,7 +78,7 @@ def trade(
     if family is not None and not family:
         raise InputError("trade: the family is empty; give at least one choice")
     picked = list(family) if family is not None else chosen(method, lines)
-    end, mass = end_of(clock), mass_of(scene)
+    end, mass = clock.end, mass_of(scene)
     options: dict[str, Any] = {"keep": keep, "resume": resume}
     paces: dict[Any, Fixed] = {}
 

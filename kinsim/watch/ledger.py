@@ -13,6 +13,7 @@ from ..kinetic.equilibrium.status import FALLBACKS, MASS_ONLY, TWO_MOMENTS
 from ..kinetic.shift import shift_linear
 from ..kinetic.wing import Density
 from ..local import Local
+from ..mean import mean_velocity
 from ..scene import Scene
 from ..stepper import Books, Stepper
 from .lift import LIFT_COLUMNS, lift_of
@@ -169,7 +170,7 @@ def held(now: Stages) -> float:
 
 def departure(density: Density, h: Array, q: Array, beta: Local, dx: float) -> dict[str, float]:
     """How f, after the force, departs from the new state (h, q) and from its equilibrium."""
-    u = np.divide(q, h, out=np.zeros_like(q), where=h > 0)
+    u = mean_velocity(q, h)
     M = np.empty_like(density.f)
     density.fill(h, u, h, u, beta, M, Status.empty(h.size))
     f = density.f

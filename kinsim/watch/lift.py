@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..balance.stages import Array
 from ..checkpoint import Kept
+from ..model.chute import SmoothChute
 from ..model.ground import Smooth
 from ..scene import Scene
 
@@ -105,7 +106,7 @@ def normal_force(ground: Smooth, h: Array, q: Array) -> tuple[NDArray[np.bool_],
 
 def lift_of(scene: Scene) -> Grounded:
     """The watch that a scene needs."""
-    ground = scene.ground
-    if not isinstance(ground, Smooth) or not ground.bend.any():
+    chute, ground = scene.chute, scene.ground
+    if not (isinstance(chute, SmoothChute) and isinstance(ground, Smooth) and ground.bends):
         return Grounded()
-    return Lift(ground, scene.x, getattr(scene.chute, "lifting", "warn") == "stop")
+    return Lift(ground, scene.x, chute.lifting == "stop")

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+import kinsim
 from kinsim.smooth.riccati import refuse_steep
 
 Array = NDArray[np.float64]
@@ -41,9 +42,7 @@ class Bend:
     def __post_init__(self) -> None:
         dx = (self.right - self.left) / self.count
         x = self.left + dx * (np.arange(self.count + 2) - 0.5)
-        y = np.clip((x - self.begin) / (self.end - self.begin), 0.0, 1.0)
-        zeta = self.steep * (1.0 - y**3 * (10.0 - 15.0 * y + 6.0 * y * y))
-        slope = -self.steep * 30.0 * (y * (1.0 - y)) ** 2 / (self.end - self.begin)
+        zeta, slope = kinsim.Bend(self.steep, 0.0, self.begin, self.end)(x)
         beta = self.epsilon * np.cos(zeta)
         if self.wall == "inner":
             beta[0], beta[-1] = beta[1], beta[-2]
