@@ -52,6 +52,17 @@ def test_derivative_is_that_of_the_angle(slope: object) -> None:
     np.testing.assert_allclose(slope(x)[1], rise, rtol=0, atol=3e-7)
 
 
+def test_families_are_as_steep_as_they_say() -> None:
+    """A valley falls towards its place from both sides, a hill away from it; the others between their ends."""
+    far = np.array([-40.0, 2.0, 40.0])
+    np.testing.assert_allclose(FAMILIES["bowl"](far)[0], [0.9, 0.0, -0.9], atol=1e-15)
+    np.testing.assert_allclose(FAMILIES["crest"](far)[0], [0.1, 0.5, 0.9], atol=1e-15)
+    near = np.array([1.4, 2.0, 2.6])
+    np.testing.assert_allclose(FAMILIES["arc"](near)[0], [0.4, 0.3, 0.2], atol=1e-15)
+    np.testing.assert_allclose(FAMILIES["hill"](near)[0], [-0.1, 0.0, 0.1], atol=1e-15)
+    np.testing.assert_allclose(FAMILIES["exponential"](np.array([0.0, 10.0]))[0], [1.0, math.exp(-1.0)], atol=1e-15)
+
+
 def test_bend_begins_and_ends_without_a_kink() -> None:
     zeta, rise = FAMILIES["bend"](np.array([0.0, 1.0, 2.0, 3.0, 4.0]))
     np.testing.assert_allclose(zeta, [0.6, 0.6, 0.3, 0.0, 0.0], atol=1e-15)
