@@ -46,7 +46,6 @@ check: .venv/installed
 
 test: check
 	$(BIN)/pytest --quiet --numprocesses 2
-	$(BIN)/python .ci/browser.py tests/lab_in_browser.py
 
 bench: .venv/installed
 	$(BIN)/python benchmarks/run.py

@@ -124,15 +124,21 @@ class Kinetic:
 Method = Annotated[Kinetic | Macroscopic, Field(discriminator="kind")]
 
 
+def unread(scheme: int, order: int) -> dict[str, str]:
+    """Keys that a scheme does not read, and to what they belong."""
+    belongs = {
+        "coupling": ("scheme 3", scheme == 3),
+        "order": ("scheme 4", scheme == 4),
+        "limiter": ("order 2 of scheme 4", scheme == 4 and order == 2),
+        "statics": ("order 1 of scheme 4", scheme == 4 and order == 1),
+    }
+    return {name: to for name, (to, read) in belongs.items() if not read}
+
+
 def _check_scheme(method: Kinetic | Macroscopic) -> None:
     """Refuse keys that the scheme does not read."""
     plain = Macroscopic.__dataclass_fields__
-    for name, belongs, read in (
-        ("coupling", "scheme 3", method.scheme == 3),
-        ("order", "scheme 4", method.scheme == 4),
-        ("limiter", "order 2 of scheme 4", method.order == 2),
-        ("statics", "order 1 of scheme 4", method.scheme == 4 and method.order == 1),
-    ):
+    for name, belongs in unread(method.scheme, method.order).items():
         asked = getattr(method, name)
-        if not read and asked != plain[name].default:
+        if asked != plain[name].default:
             raise ValueError(f"{name} = {asked!r} belongs to {belongs}; leave it out, or take that")

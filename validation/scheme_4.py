@@ -21,6 +21,7 @@ from laboratory.repaired import DELTA, REPAIRED, SCHEMES, Array, courant, pile, 
 
 from kinsim import Courant, Fixed, Macroscopic, Profile, load_scene, simulate, step
 from kinsim.exact import Riemann
+from kinsim.run import ENDED
 
 SEEDS = range(2)
 Measure = Callable[[Macroscopic, bool], float]
@@ -138,7 +139,7 @@ def film(method: Macroscopic, full: bool) -> float:
     for depth in (0.0, 1e-12):
         scene = scene_of(np.where(np.abs(x - 0.4) < 0.2, 1.0, depth), delta=DELTA, ends="open")
         one = simulate(scene, method, Courant(courant(method), 1.0), 10**6)
-        if one.verdict.kind not in ("finished", "at-rest"):
+        if one.verdict.kind not in ENDED:
             return math.inf
         ends.append(one.h[-1])
     return float(0.05 * np.abs(ends[0] - ends[1]).sum())
@@ -166,7 +167,7 @@ def motion(film: float) -> Measure:
             h = np.where(np.abs(x - 0.5) < 0.15, 1.0, film)
             scene = scene_of(h, 0.5 * (h > 0.5), zeta=zeta, delta=DELTA)
             one = simulate(scene, method, Courant(courant(method, 0.45), 30.0), 10**6)
-            if one.verdict.kind not in ("finished", "at-rest"):
+            if one.verdict.kind not in ENDED:
                 return math.inf
             worst = max(worst, float(np.abs(one.u[-1]).max()))
         return worst

@@ -13,7 +13,7 @@ from pydantic import TypeAdapter
 
 from ..clock import Fixed
 from ..errors import InputError
-from ..method import Kinetic
+from ..method import Kinetic, unread
 from ..model.friction import Frictionless
 from ..model.heap import Blocks, Table
 from ..overview import first_courant
@@ -160,12 +160,5 @@ def _prepare(keys: dict[str, Any], key: str, before: Setup) -> None:
 
 def _drop_unread(method: dict[str, Any]) -> None:
     """Leave out what belongs to other schemes."""
-    scheme, order = method.get("scheme", 4), method.get("order", 1)
-    for key, read in (
-        ("coupling", scheme == 3),
-        ("order", scheme == 4),
-        ("limiter", scheme == 4 and order == 2),
-        ("statics", scheme == 4 and order == 1),
-    ):
-        if not read:
-            method.pop(key, None)
+    for key in unread(method.get("scheme", 4), method.get("order", 1)):
+        method.pop(key, None)

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..balance.stages import Array
 from ..errors import InputError
+from ..film.reel import equilibrium
 from ..run import Run
 from ..watch.dump import LONG_NAMES
 from .picture import save
@@ -94,13 +95,12 @@ def _cuts(run: Run, dump: xarray.DataArray, chosen: list[int], figure: Any) -> N
     for number, (axes, cell) in enumerate(zip(all_axes, chosen, strict=True)):
         fine = np.linspace(xi[0], xi[-1], 801)
         beta = _beta(run, x)[cell]
-        square = 2.0 * beta * max(h[cell], 0.0) - (fine - u[cell]) ** 2
-        M = np.sqrt(np.maximum(square, 0.0)) / (np.pi * beta)
+        state = h[cell : cell + 1], u[cell : cell + 1], beta
+        M = equilibrium(*state, fine)[0]
         moved = float(dump["offset"][-1, cell]) if "offset" in dump.coords else 0.0
         f, edges = dump[-1, cell].to_numpy(), _edges(xi) + moved
         if _is_held(dump):  # the outer shell of M: what is left of M goes on
-            here = np.sqrt(np.maximum(2.0 * beta * max(h[cell], 0.0) - (xi - u[cell]) ** 2, 0.0))
-            here /= np.pi * beta
+            here = equilibrium(*state, xi)[0]
             axes.stairs(
                 here, edges, baseline=np.maximum(here - f, 0.0), fill=True, color=_colour(number), label="held back"
             )

@@ -87,13 +87,7 @@ def _on_the_bed(run: Run, axes: Any) -> None:
     seen = ("lifted_from", "lifted_to", "lifted_since")
     begin, end, since = (float(run.entries.get(name, [np.nan])[-1]) for name in seen)
     if np.isfinite(begin):
-        bed.mark(
-            axes,
-            run.scene,
-            begin,
-            end,
-            f"left the ground here, first at t = {since:.3g}",
-        )
+        bed.mark(axes, run.scene, begin, end, f"left the ground here, first at t = {since:.3g}")
         axes.legend(loc="upper right", frameon=False)
     axes.set_title(f"on the chute, {bed.words}", fontsize="medium")
 

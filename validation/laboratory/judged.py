@@ -19,6 +19,7 @@ from kinsim.exact import (
     TravellingShock,
     UniformSlide,
 )
+from kinsim.run import ENDED
 
 BETA = 0.4
 DOWN, UP = {"pull": 0.4, "resistance": 0.3}, {"pull": 0.3, "resistance": 0.4}
@@ -122,7 +123,7 @@ def scene_of(exact: Any, cells: Cells, beta: float) -> Scene:
 
 def error(exact: Any, run: Run, inner: tuple[float, float]) -> float:
     """L1 error of h at the end of a run, between two places that no open end has reached."""
-    if run.verdict.kind not in ("finished", "at-rest"):
+    if run.verdict.kind not in ENDED:
         raise RuntimeError(f"a run that did not come to its end has no error: {run.verdict.message}")
     keep = (run.x > inner[0]) & (run.x < inner[1])
     h, _ = exact.averages(run.scene.cells, float(run.t[-1]))

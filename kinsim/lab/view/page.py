@@ -15,6 +15,7 @@ from panel.io.document import unlocked
 
 from ...errors import InputError
 from ...read import built_in
+from ...run import ENDED
 from ..play import Play
 from ..prepare import make_aside
 from ..setup import Setup
@@ -154,7 +155,7 @@ class Page:
             self._fault(error)
         self._halt()
         if play.verdict is not None:
-            good = play.verdict.kind in ("finished", "at-rest")
+            good = play.verdict.kind in ENDED
             self._painter.say(f"The run is over: {play.verdict}.", "" if good else "fault")
         return False
 
