@@ -1,7 +1,8 @@
 """f after transport and shift in one sweep over the cells, from what a step has settled: M is made again, never stored.
 
-Three rows of M roll through the first-level cache, each as two sides counted outward from xi = 0, so that upwinding is
-the choice of a row. The sweep does what the rooms do to each entry, in their order: the bits are theirs.
+Three rows of M roll through the first-level cache. The sweep does what the rooms do to each entry, in their order: the
+bits are theirs. M is made of blocks of nodes that cover its support, for what a block holds besides is zero, and a loop
+over whole blocks runs in vector registers to its end.
 
 Loops run over unsigned indices of whole arrays: a signed one may count from the end in numpy, and a slice counts
 references, and either keeps a short loop from running in vector registers.
@@ -15,98 +16,107 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..kernel import kernel, kernel_inner, kernel_part
-from .equilibrium.averages import average_inside
+from .equilibrium.averages import antiderivative
 from .shift import split_shift
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Spans = NDArray[np.int64]
+Place = np.uint64
+
+BLOCK = 8
+"""Nodes of a block."""
 
 
 @kernel_inner
-def fill_row(h: float, u: float, beta: float, dxi: float, averaged: bool, side: Array, rows: Array, row: int) -> int:
-    """M(h, xi - u) on the side xi > 0, of which `side` are the nodes; returns a number past which it is zero."""
-    half = side.size
+def cover(h: float, u: float, beta: float, dxi: float, n: int) -> tuple[int, int]:
+    """The first of the nodes that cover the support of M(h, xi - u), and one past the last, in whole blocks."""
+    c, half = math.sqrt(2.0 * beta * max(h, 0.0)), 0.5 * n
+    low = int(min(max((u - c) / dxi + half - 1.0, 0.0), n)) & -BLOCK
+    high = (int(min(max((u + c) / dxi + half + 1.0, 0.0), n)) + BLOCK) & -BLOCK
+    return (low, min(high, n)) if c > 0.0 else (low, low)
+
+
+@kernel_part
+def fill_row(
+    h: float, u: float, beta: float, dxi: float, averaged: bool, at: Array, low: int, high: int, rows: Array, row: Place
+) -> None:
+    """M(h, xi - u) from node `low` to below `high`, elsewhere zero; `at` are the nodes, or the edges around them."""
+    begin, end = Place(low), Place(high)
+    for j in range(begin):
+        rows[row, j] = 0.0
     if averaged:
-        begin, end = average_inside(h, u, beta, dxi, rows[row])
-        blank(rows[row], 0, begin)
+        c, scale = math.sqrt(2.0 * beta * max(h, 0.0)), h / (math.pi * dxi)
+        for j in range(begin, end):
+            rows[row, j] = antiderivative((at[j + Place(1)] - u) / c)
+        below = antiderivative((at[begin] - u) / c)
+        for j in range(begin, end):
+            above = rows[row, j]
+            rows[row, j] = max(scale * (above - below), 0.0)
+            below = above
     else:
         square, scale = 2.0 * beta * max(h, 0.0), 1.0 / (math.pi * beta)
-        c = math.sqrt(square)
-        end = min((int(min(max((u + c) / dxi + 1.0, 0.0), half)) + 8) & -8, half) if c > 0.0 else 0
-        for k in range(np.uint64(end)):
-            w = side[k] - u
-            rows[row, k] = scale * math.sqrt(max(square - w * w, 0.0))
-    for k in range(np.uint64(end), np.uint64(half)):
-        rows[row, k] = 0.0
-    return end
+        for j in range(begin, end):
+            w = at[j] - u
+            rows[row, j] = scale * math.sqrt(max(square - w * w, 0.0))
+    for j in range(end, Place(rows.shape[1])):
+        rows[row, j] = 0.0
 
 
 @kernel_part
-def cap(rows: Array, row: int, most: int, end: int) -> None:
+def cap(rows: Array, row: Place, most: Place, low: int, high: int) -> None:
     """No face sends more than stands before it."""
-    for k in range(np.uint64(end)):
-        rows[row, k] = min(rows[row, k], rows[most, k])
+    for j in range(Place(low), Place(high)):
+        rows[row, j] = min(rows[row, j], rows[most, j])
 
 
 @kernel_part
-def transport_outward(
-    rows: Array, here: int, leaving: int, coming: int, side: Array, lam: float, to: Array, zero: int, count: int
+def transport_row(
+    rows: Array,
+    here: Place,
+    leaving: Place,
+    coming: Place,
+    speed: Array,
+    lam: float,
+    low: int,
+    high: int,
+    padded: Array,
 ) -> None:
-    """M - lam |xi| (M_leaving - M_coming) of `count` nodes with xi > 0, into entries of `to` from `zero` on."""
-    at = np.uint64(zero)
-    for k in range(np.uint64(count)):
-        a = lam * side[k]
-        to[at + k] = (rows[here, k] - a * rows[leaving, k]) + a * rows[coming, k]
-
-
-@kernel_part
-def transport_inward(
-    rows: Array, here: int, leaving: int, coming: int, side: Array, lam: float, to: Array, zero: int, count: int
-) -> None:
-    """The same of nodes with xi < 0, into entries of `to` from below `zero` downward."""
-    at = np.uint64(zero - 1)
-    for k in range(np.uint64(count)):
-        a = lam * side[k]
-        to[at - k] = (rows[here, k] - a * rows[leaving, k]) + a * rows[coming, k]
-
-
-@kernel_part
-def blank(row: Array, begin: int, end: int) -> None:
-    """Zero from `begin` to below `end`, nothing if there is nothing between."""
-    for j in range(begin, end):
-        row[j] = 0.0
+    """M - lam |xi| (M_leaving - M_coming) of nodes on one side of xi = 0, one entry further in `padded`."""
+    for j in range(Place(low), Place(high)):
+        a = lam * speed[j]
+        padded[j + Place(1)] = (rows[here, j] - a * rows[leaving, j]) + a * rows[coming, j]
 
 
 @kernel_part
 def blend(padded: Array, near: int, far: int, theta: float, f: Array, i: int, begin: int, end: int) -> None:
-    """f_i = (1 - theta) near + theta far from `begin` to below `end`; both are views of a row that begin where told."""
+    """f_i = (1 - theta) near + theta far from `begin` to below `end`, of what stands in `padded` from there on."""
     keep = 1.0 - theta
-    one, other = np.uint64(near), np.uint64(far)
-    for j in range(np.uint64(begin), np.uint64(end)):
-        f[i, j] = keep * padded[one + j] + theta * padded[other + j]
+    at, one, other = Place(begin), Place(near), Place(far)
+    for k in range(Place(end - begin)):
+        f[i, at + k] = keep * padded[one + k] + theta * padded[other + k]
 
 
 @kernel_part
 def shift_row(
     padded: Array, low: int, high: int, J: float, h1: float, dxi: float, f: Array, i: int, span: Spans
 ) -> None:
-    """The linear remap of `shift_linear` for one row, which stands in `padded` with n + 1 zeros on both sides.
+    """The linear remap of `shift_linear` for one row, which stands in `padded` one entry further.
 
     The row holds something from `low` to below `high`; where f_i does is kept in span[i], and elsewhere it is zero.
     """
     n = f.shape[1]
     whole, theta = split_shift(J, h1, dxi, n)
-    first = n + 1
+    padded[low], padded[high + 1] = 0.0, 0.0
     if J < 0.0:
         begin, end = max(low - whole - 1, 0), max(high - whole, 0)
-        blend(padded, first + whole, first + whole + 1, theta, f, i, begin, end)
+        blend(padded, begin + whole + 1, begin + whole + 2, theta, f, i, begin, end)
     else:
         begin, end = min(low + whole, n), min(high + whole + 1, n)
-        blend(padded, first - whole, first - whole - 1, theta, f, i, begin, end)
-    for j in range(span[i, 0], min(begin, span[i, 1])):
+        blend(padded, begin - whole + 1, begin - whole, theta, f, i, begin, end)
+    for j in range(Place(span[i, 0]), Place(min(begin, span[i, 1]))):
         f[i, j] = 0.0
-    for j in range(max(end, span[i, 0]), span[i, 1]):
+    for j in range(Place(max(end, span[i, 0])), Place(span[i, 1])):
         f[i, j] = 0.0
     span[i, 0], span[i, 1] = begin, end
 
@@ -114,47 +124,45 @@ def shift_row(
 @kernel
 def carry(
     h: Array, u: Array, h_left: Array, u_left: Array, h_right: Array, u_right: Array, at_left: Flags, at_right: Flags,
-    J: Array, pulled: Array, side: Array, beta: float, dxi: float, averaged: bool, lam: float,
-    rows: Array, padded: Array, f: Array, span: Spans,
+    J: Array, pulled: Array, at: Array, speed: Array, beta: float, dxi: float, averaged: bool, lam: float,
+    cells: Spans, rows: Array, padded: Array, f: Array, span: Spans,
 ) -> None:  # fmt: skip
     """f after transport and shift, shape (nx, n), zero outside of `span` before and after.
 
-    h, u are ghosted; `rows`, shape (10, n/2), and `padded`, shape (3 n + 2,) and zero, are room to work in. Where
-    at_left and at_right say so a cell takes the states of its face at that wall, else (19).
+    h, u are ghosted; `at` are the nodes, or with `averaged` the n + 1 edges, and `speed` is |xi|. Where at_left and
+    at_right say so a cell takes the states of its face at that wall, else (19). `cells`, shape (nx + 2, 2), `rows`,
+    shape (7, n), and `padded`, shape (n + 2,), are room to work in.
     """
-    nx, half = J.size, side.size
-    middle = 3 * half + 1
-    old_low, old_high = middle, middle
-    ahead, behind, ahead_before, ahead_face, behind_face = 0, 0, 0, 0, 0
-    rest = rows.shape[0]  # no number is written out, or each would be compiled for itself
-    after, before, here, face, next_face = rest - 10, rest - 8, rest - 6, rest - 4, rest - 2
+    nx, n = J.size, speed.size
+    half = n // 2
     for c in range(nx + 2):
-        ahead_after = fill_row(h[c], u[c], beta, dxi, averaged, side, rows, after)
-        behind_after = fill_row(h[c], -u[c], beta, dxi, averaged, side, rows, after + 1)
-        ahead_next, behind_next = 0, 0
+        cells[c, 0], cells[c, 1] = cover(h[c], u[c], beta, dxi, n)
+    low_face, high_face = half, half
+    one = Place(1)
+    before, here, after, face, next_face = Place(0), one, Place(2), Place(3), Place(5)
+    for c in range(nx + 2):
+        fill_row(h[c], u[c], beta, dxi, averaged, at, cells[c, 0], cells[c, 1], rows, after)
+        low_next, high_next = half, half
         if c > 0 and ((c > 1 and at_right[c - 2]) or (c <= nx and at_left[c - 1])):
             k = c - 1
-            ahead_next = fill_row(h_left[k], u_left[k], beta, dxi, averaged, side, rows, next_face)
-            behind_next = fill_row(h_right[k], -u_right[k], beta, dxi, averaged, side, rows, next_face + 1)
-            cap(rows, next_face, here, ahead_next)
-            cap(rows, next_face + 1, after + 1, behind_next)
+            low, high = cover(h_left[k], u_left[k], beta, dxi, n)
+            low, high_next = max(low, half), max(high, half)
+            fill_row(h_left[k], u_left[k], beta, dxi, averaged, at, low, high_next, rows, next_face)
+            cap(rows, next_face, here, low, high_next)
+            low, high = cover(h_right[k], u_right[k], beta, dxi, n)
+            low_next, high = min(low, half), min(high, half)
+            fill_row(h_right[k], u_right[k], beta, dxi, averaged, at, low_next, high, rows, next_face + one)
+            cap(rows, next_face + one, after, low_next, high)
         if c > 1:
             i = c - 2
-            down, up = max(behind, behind_after), max(ahead, ahead_before)
-            if at_left[i]:
-                down, up = max(down, behind_face), max(up, ahead_face)
-            if at_right[i]:
-                down, up = max(down, behind_next), max(up, ahead_next)
-            leaving, coming = face + 1 if at_left[i] else here + 1, next_face + 1 if at_right[i] else after + 1
-            transport_inward(rows, here + 1, leaving, coming, side, lam, padded, middle, down)
+            low = min(cells[i, 0], min(cells[i + 1, 0], cells[c, 0]))
+            high = max(cells[i, 1], max(cells[i + 1, 1], cells[c, 1]))
+            low, high = min(low, min(low_face, low_next)), max(high, max(high_face, high_next))
+            leaving, coming = face + one if at_left[i] else here, next_face + one if at_right[i] else after
+            transport_row(rows, here, leaving, coming, speed, lam, low, min(high, half), padded)
             leaving, coming = next_face if at_right[i] else here, face if at_left[i] else before
-            transport_outward(rows, here, leaving, coming, side, lam, padded, middle, up)
-            blank(padded, old_low, middle - down)
-            blank(padded, middle + up, old_high)
-            old_low, old_high = middle - down, middle + up
-            shift_row(padded, half - down, half + up, J[i], pulled[i], dxi, f, i, span)
-        ahead_before, ahead, behind = ahead, ahead_after, behind_after
-        ahead_face, behind_face = ahead_next, behind_next
+            transport_row(rows, here, leaving, coming, speed, lam, max(low, half), high, padded)
+            shift_row(padded, low, high, J[i], pulled[i], dxi, f, i, span)
+        low_face, high_face = low_next, high_next
         before, here, after = here, after, before
         face, next_face = next_face, face
-    blank(padded, 0, padded.size)

@@ -7,14 +7,11 @@ import numpy as np
 from ..balance.stages import Array, Stages, reach
 from .carry import carry
 from .equilibrium import EQUILIBRIA, Status
-from .occupied import add_held, foresee, sum_cells
+from .occupied import LANES, add_held, foresee, sum_cells
 from .shift import shift_linear
 from .transport import add_sides, transport
 from .velocity import Grid
 from .wing import Density
-
-TILE = 64
-"""Cells whose half-range sums are made at once."""
 
 
 class OnDemand(Density):
@@ -39,8 +36,11 @@ class OnDemand(Density):
         self._w1, self._w2 = self._equilibrium.weights(grid)
         self._averaged = self._equilibrium is EQUILIBRIA["cell-average"]
         self._P, self._N = np.zeros(grid.half), np.zeros(grid.half)
-        self._tile = np.zeros((2, TILE))
+        self._at = grid.edges if self._averaged else grid.xi
+        self._speed = np.abs(grid.xi)
+        self._lanes = np.zeros(8 * LANES)
         self._h, self._u = np.zeros((2, self._nx + 2))
+        self._covers = np.zeros((self._nx + 2, 2), dtype=np.int64)
         self._spans = np.zeros((self._nx, 2), dtype=np.int64)
         self._kept: dict[str, Array] = {}
         self._made: set[str] = set()
@@ -58,7 +58,7 @@ class OnDemand(Density):
         self._made.discard("M")
         shape = (float(self._beta), self.grid.dxi, self._averaged)
         self._top = sum_cells(
-            now.h, now.u, *shape, self._w1, self._w2, self._tile, self._sums, now.low, now.high
+            now.h, now.u, *shape, self._w1, self._w2, self._lanes, self._sums, now.low, now.high
         )  # fmt: skip
         return self._top
 
@@ -134,12 +134,12 @@ class OnDemand(Density):
     def f(self) -> Array:
         f = self._place("f", self._nx)
         if "f" not in self._made:
-            now, at, grid, side = self._now, self._now.balanced, self.grid, self.grid.side
-            rows, padded = self._place("rows", 10, grid.half), self._place("padded", 1, 3 * grid.count + 2)[0]
+            now, at, grid = self._now, self._now.balanced, self.grid
+            rows, padded = self._place("rows", 7), self._place("padded", 1, grid.count + 2)[0]
             carry(
                 self._h, self._u, at.h_left, at.u_left, at.h_right, at.u_right, now.at_left, now.at_right,
-                now.J, now.h1, side, float(self._beta), grid.dxi, self._averaged, self._lam, rows, padded, f,
-                self._spans,
+                now.J, now.h1, self._at, self._speed, float(self._beta), grid.dxi, self._averaged, self._lam,
+                self._covers, rows, padded, f, self._spans,
             )  # fmt: skip
             self._made.add("f")
         return f

@@ -10,10 +10,18 @@ from numpy.typing import NDArray
 from ..balance.sides import TINY
 from ..kernel import kernel, kernel_inner, kernel_part
 from .equilibrium.averages import antiderivative, average_inside, sample_inside
-from .shift import split_shift
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+
+LANES = 32
+"""Cells whose sums run side by side."""
+
+H, V, SQUARE, C, BELOW, M1, M2, LAST = (LANES * place for place in range(8))
+"""Where lanes keep h; u or, for xi < 0, -u; 2 beta h; c; the integral of M so far; the sums; the last node occupied.
+
+All in one array: of several the compiler would ask before each loop whether they overlap.
+"""
 
 
 @kernel_inner
@@ -38,27 +46,19 @@ def sum_side(side: Array, begin: int, end: int, w1: Array, w2: Array) -> tuple[f
 
 
 @kernel_inner
-def occupied_nodes(
-    h: float, u: float, beta: float, dxi: float, averaged: bool, slowest: float, quickest: float, half: int
-) -> tuple[int, int]:
-    """The first node xi > 0 at which M(h, xi - u) is not zero, and one past the last; the same number where none is.
-
-    M reaches from `slowest` to `quickest`, in velocity cells.
-    """
-    begin = int(min(max(slowest - 1.0, 0.0), half))
-    end = math.ceil(min(max(quickest + 1.0, 0.0), half)) if h > 0.0 else begin
-    while end > begin and empty(h, u, beta, dxi, averaged, end - 1):
-        end -= 1
-    while begin < end and empty(h, u, beta, dxi, averaged, begin):
-        begin += 1
-    return begin, max(begin, end)
+def first_node(h: float, u: float, beta: float, dxi: float, averaged: bool) -> float:
+    """The first node at which M(h, xi - u) is not zero where all of it stands on xi > 0."""
+    c = math.sqrt(2.0 * beta * h)
+    k = max(math.floor((u - c) / dxi - 1.0), 0)
+    while empty(h, u, c, beta, dxi, averaged, k):
+        k += 1
+    return (k + 0.5) * dxi
 
 
 @kernel_inner
-def empty(h: float, u: float, beta: float, dxi: float, averaged: bool, k: int) -> bool:
+def empty(h: float, u: float, c: float, beta: float, dxi: float, averaged: bool, k: int) -> bool:
     """Whether M is zero at node k."""
     if averaged:
-        c = math.sqrt(2.0 * beta * h)
         below, above = antiderivative((k * dxi - u) / c), antiderivative(((k + 1) * dxi - u) / c)
         return not h / (math.pi * dxi) * (above - below) > 0.0
     w = (k + 0.5) * dxi - u
@@ -66,41 +66,49 @@ def empty(h: float, u: float, beta: float, dxi: float, averaged: bool, k: int) -
 
 
 @kernel_part
-def add_sampled(
-    h: Array, v: Array, square: Array, beta: float, dxi: float, w1: Array, w2: Array, begin: int, end: int,
-    m1: Array, m2: Array,
-) -> None:  # fmt: skip
-    """Sums of samples, node by node for many cells; `v` is u or, for xi < 0, -u, and `square` room."""
+def add_sampled(beta: float, dxi: float, w1: Array, w2: Array, begin: int, end: int, room: Array) -> None:
+    """Sums of samples, node by node for all lanes."""
     scale = 1.0 / (math.pi * beta)
-    for i in range(h.size):
-        square[i], m1[i], m2[i] = 2.0 * beta * max(h[i], 0.0), 0.0, 0.0
     for k in range(begin, end):
         xi, first, second = (k + 0.5) * dxi, w1[k], w2[k]
-        for i in range(h.size):
-            w = xi - v[i]
-            M = scale * math.sqrt(max(square[i] - w * w, 0.0))
-            m1[i] += first * M
-            m2[i] += second * M
+        for i in range(LANES):
+            w = xi - room[V + i]
+            M = scale * math.sqrt(max(room[SQUARE + i] - w * w, 0.0))
+            room[M1 + i] += first * M
+            room[M2 + i] += second * M
+            room[LAST + i] = max(room[LAST + i], xi if M > 0.0 else -np.inf)
 
 
 @kernel_part
-def add_averages(
-    h: Array, v: Array, below: Array, beta: float, dxi: float, w1: Array, w2: Array, begin: int, end: int,
-    m1: Array, m2: Array,
-) -> None:  # fmt: skip
+def add_averages(beta: float, dxi: float, w1: Array, w2: Array, begin: int, end: int, room: Array) -> None:
     """Sums of cell averages, likewise."""
-    for i in range(h.size):
-        c = math.sqrt(2.0 * beta * max(h[i], 0.0))
-        below[i], m1[i], m2[i] = antiderivative((begin * dxi - v[i]) / max(c, TINY)), 0.0, 0.0
+    for i in range(LANES):
+        room[BELOW + i] = antiderivative((begin * dxi - room[V + i]) / max(room[C + i], TINY))
     for k in range(begin, end):
-        edge, first, second = (k + 1) * dxi, w1[k], w2[k]
-        for i in range(h.size):
-            c = math.sqrt(2.0 * beta * max(h[i], 0.0))
-            above = antiderivative((edge - v[i]) / max(c, TINY))
-            M = max(max(h[i], 0.0) / (math.pi * dxi) * (above - below[i]), 0.0)
-            below[i] = above
-            m1[i] += first * M
-            m2[i] += second * M
+        xi, edge, first, second = (k + 0.5) * dxi, (k + 1) * dxi, w1[k], w2[k]
+        for i in range(LANES):
+            above = antiderivative((edge - room[V + i]) / max(room[C + i], TINY))
+            M = max(room[H + i] / (math.pi * dxi) * (above - room[BELOW + i]), 0.0)
+            room[BELOW + i] = above
+            room[M1 + i] += first * M
+            room[M2 + i] += second * M
+            room[LAST + i] = max(room[LAST + i], xi if M > 0.0 else -np.inf)
+
+
+@kernel_inner
+def add_lanes(
+    beta: float, dxi: float, averaged: bool, w1: Array, w2: Array, slowest: float, quickest: float, room: Array
+) -> None:
+    """Sums over xi > 0 of all lanes, in which M reaches from `slowest` to `quickest`."""
+    half = w1.size
+    begin = int(min(max(slowest / dxi - 1.0, 0.0), half))
+    end = math.ceil(min(max(quickest / dxi + 1.0, 0.0), half))
+    for i in range(LANES):
+        room[M1 + i], room[M2 + i], room[LAST + i] = 0.0, 0.0, -np.inf
+    if averaged:
+        add_averages(beta, dxi, w1, w2, begin, end, room)
+    else:
+        add_sampled(beta, dxi, w1, w2, begin, end, room)
 
 
 @kernel
@@ -110,41 +118,39 @@ def sum_cells(
 ) -> float:  # fmt: skip
     """Half-range sums of each ghosted cell, shape (4, nx + 2), and its outermost occupied nodes.
 
-    M is made node by node for `room.shape[1]` cells at once, and never stored. The sums of a cell run outward from
-    xi = 0 as those of `transport.half_sums` do, and what they add besides is zero: they are bitwise those of stored
-    rows, and so are the outermost nodes. Returns the outermost of all nodes, 0 if all is dry.
+    M is made node by node for LANES cells at once in `room`, shape (8 LANES,), and never stored. The sums of a cell
+    run outward from xi = 0 as those of `transport.half_sums` do, and what they add besides is zero: they are bitwise
+    those of stored rows, and so are the outermost nodes. Returns the outermost of all nodes, 0 if all is dry.
     """
-    top, half = 0, w1.size
-    for start in range(0, h.size, room.shape[1]):
-        stop = min(start + room.shape[1], h.size)
-        tile, count = slice(start, stop), stop - start
-        v, spare = room[0, :count], room[1, :count]
-        begins, ends = (half, half), (0, 0)
+    top = 0.0
+    for start in range(0, h.size, LANES):
+        stop = min(start + LANES, h.size)
+        slowest, quickest = np.inf, -np.inf
+        for i in range(LANES):
+            here = start + i < stop
+            room[H + i] = max(h[start + i], 0.0) if here else 0.0
+            room[V + i] = u[start + i] if here else 0.0
+        for i in range(LANES):
+            room[SQUARE + i] = 2.0 * beta * room[H + i]
+            room[C + i] = math.sqrt(room[SQUARE + i])
+        for i in range(LANES):
+            c = room[C + i]
+            slowest = min(slowest, room[V + i] - c if c > 0.0 else np.inf)
+            quickest = max(quickest, room[V + i] + c if c > 0.0 else -np.inf)
+        add_lanes(beta, dxi, averaged, w1, w2, slowest, quickest, room)
         for i in range(start, stop):
-            v[i - start] = -u[i]
-            low[i], high[i] = np.inf, -np.inf
-            c = math.sqrt(2.0 * beta * max(h[i], 0.0))
-            slowest, quickest = (u[i] - c) / dxi, (u[i] + c) / dxi
-            first, last = occupied_nodes(h[i], u[i], beta, dxi, averaged, slowest, quickest, half)
-            begin, end = occupied_nodes(h[i], -u[i], beta, dxi, averaged, -quickest, -slowest, half)
-            if first < last:
-                low[i], high[i] = (first + 0.5) * dxi, (last - 0.5) * dxi
-                begins, ends = (min(begins[0], first), begins[1]), (max(ends[0], last), ends[1])
-            if begin < end:
-                low[i] = -(end - 0.5) * dxi
-                high[i] = high[i] if first < last else -(begin + 0.5) * dxi
-                begins, ends = (begins[0], min(begins[1], begin)), (ends[0], max(ends[1], end))
-        top = max(top, max(ends[0], ends[1]))
-        p, n = (sums[0, tile], sums[1, tile]), (sums[2, tile], sums[3, tile])
-        if averaged:
-            add_averages(h[tile], u[tile], spare, beta, dxi, w1, w2, begins[0], ends[0], p[0], p[1])
-            add_averages(h[tile], v, spare, beta, dxi, w1, w2, begins[1], ends[1], n[0], n[1])
-        else:
-            add_sampled(h[tile], u[tile], spare, beta, dxi, w1, w2, begins[0], ends[0], p[0], p[1])
-            add_sampled(h[tile], v, spare, beta, dxi, w1, w2, begins[1], ends[1], n[0], n[1])
+            sums[0, i], sums[1, i], high[i] = room[M1 + i - start], room[M2 + i - start], room[LAST + i - start]
+        for i in range(LANES):
+            room[V + i] = -room[V + i]
+        add_lanes(beta, dxi, averaged, w1, w2, -quickest, -slowest, room)
         for i in range(start, stop):
-            sums[2, i] = 0.0 - sums[2, i]
-    return (top - 0.5) * dxi if top > 0 else 0.0
+            sums[2, i], sums[3, i], low[i] = 0.0 - room[M1 + i - start], room[M2 + i - start], -room[LAST + i - start]
+            if low[i] == np.inf and high[i] > 0.0:
+                low[i] = first_node(h[i], u[i], beta, dxi, averaged)
+            if high[i] == -np.inf and low[i] < 0.0:
+                high[i] = -first_node(h[i], -u[i], beta, dxi, averaged)
+            top = max(top, max(-low[i], high[i]))
+    return top
 
 
 @kernel_inner
@@ -190,20 +196,14 @@ def foresee(low: Array, high: Array, J: Array, h1: Array, dxi: float, half: int,
 
     A row of f stands where its cell and the two neighbours stood, and is moved by the force.
     """
-    leaves, empty = False, False
-    for i in range(J.size):
-        slowest = min(low[i + 1], min(low[i], low[i + 2]))
-        quickest = max(high[i + 1], max(high[i], high[i + 2]))
-        if slowest > quickest:
-            empty = True
-            continue
-        first, last = math.floor(slowest / dxi) + half, math.floor(quickest / dxi) + half
-        if forced and J[i] != 0.0:
-            whole, _ = split_shift(J[i], h1[i], dxi, 2 * half)
-            if J[i] < 0.0:
-                first -= whole + 1
-            else:
-                last += whole + 1
-        leaves = leaves or first < 0 or last >= 2 * half
-        empty = empty or first > 0 or last < 2 * half - 1
-    return leaves, empty
+    n, leaves, full, one = 2.0 * half, 0, 0, np.uint64(1)
+    for i in range(np.uint64(J.size)):
+        k = i + one
+        slowest, quickest = min(low[k], min(low[i], low[k + one])), max(high[k], max(high[i], high[k + one]))
+        first, last = np.floor(slowest / dxi) + half, np.floor(quickest / dxi) + half
+        whole = np.floor(min(abs(J[i]) / h1[i] / dxi if h1[i] > 0.0 else 0.0, n))
+        first -= whole + 1.0 if forced and J[i] < 0.0 else 0.0
+        last += whole + 1.0 if forced and J[i] > 0.0 else 0.0
+        leaves += (first < 0.0) | (last >= n)
+        full += (first <= 0.0) & (last >= n - 1.0)
+    return leaves > 0, full < J.size

@@ -136,6 +136,12 @@ class Grid:
         """Centres, ascending, shape (count,)."""
         return np.concatenate([-self.side[::-1], self.side])
 
+    @property
+    def edges(self) -> NDArray[np.float64]:
+        """Edges of the cells, ascending, shape (count + 1,)."""
+        edges: NDArray[np.float64] = np.arange(-self.half, self.half + 1, dtype=float) * self.dxi
+        return edges
+
 
 def _within_numbers(grid: Grid) -> Grid:
     """`grid`, if sums over it cannot overflow."""
