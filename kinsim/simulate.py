@@ -32,7 +32,7 @@ from .sleep import Awake
 from .stepper import make_stepper
 from .watch.causes import Causes
 from .watch.dump import Dump, Recorder
-from .watch.fault import find_fault
+from .watch.fault import find_fault, room_beside
 from .watch.ledger import Ledger
 from .watch.survey import Survey
 
@@ -229,6 +229,7 @@ class Loop:
         scene, clock, stepper, awake = self.scene, self.clock, self.stepper, self.awake
         dx, beta = scene.cells.dx, scene.beta
         sleepy = self._same_length()
+        room = room_beside(self.ledger.first_mass, dx)
         look = Survey.of(self.h, self.q, beta)
         if self.step == 0 and self.ledger.lift.note(0.0, self.h, self.q):
             return self.verdict("lifted-off", LIFTED)
@@ -265,7 +266,8 @@ class Loop:
                 look = Survey.of(h1, q1, beta)
             if cut:
                 books = books._replace(window_loss=books.window_loss + dx * cut)
-            fault = find_fault(look, h1, q1, self.ledger.with_these(books), dx, self.ledger.first_mass)
+            booked = self.ledger.with_these(books)
+            fault = find_fault(look, h1, q1, booked, room)
             if fault:
                 place = "" if fault.cell is None else f" in cell {fault.cell} (x = {scene.x[fault.cell]:.4g})"
                 return self.verdict("non-finite", f"{fault.words}{place}; stopped", fault.cell)
@@ -274,7 +276,7 @@ class Loop:
             settled = clock.stop_at_rest and self.still > 0 and self._settled(h1, q1, look.h_max)
             last = self._accept(h1, q1, dt, after)
             lifted = self.ledger.lift.note(self.t, self.h, self.q)
-            self.ledger.note(look, courant, books, awake.at.density if awake.at else None)
+            self.ledger.note(look, courant, booked, awake.at.density if awake.at else None)
             self.fastest = look.fastest
             if last or self.step % self.save_every == 0:
                 self._ask_for_rows()

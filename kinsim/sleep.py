@@ -96,7 +96,7 @@ class Awake:
         if self.at is not self._whole:
             self.h1[:], self.q1[:] = h, q
         books = Books(0.0, 0.0, 0.0, 0.0, 0.0) if self.at is None else self._step(self.at, h, q, dt)
-        return books._replace(inflow_left=dt * self._entering[0], inflow_right=dt * self._entering[1])
+        return Books(dt * self._entering[0], dt * self._entering[1], *books[2:])
 
     def kept(self) -> Kept:
         """What the next step depends on."""

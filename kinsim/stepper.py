@@ -10,7 +10,7 @@ import numpy as np
 from .balance.scheme4 import Held, HeldSloped, Reflecting
 from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face, flat
 from .balance.settle import settle, stand_held
-from .balance.slide import TILE, slide
+from .balance.slide import TILE, slide, stand
 from .balance.stages import TOP, Array, Stages, reach
 from .balance.update import mean_of_stages, update
 from .balance.wing import Wing
@@ -20,7 +20,7 @@ from .kinetic.fitted import FittedMeasure
 from .kinetic.project import PROJECTIONS, FluxDifference, Projection
 from .kinetic.velocity import Fitted
 from .kinetic.wing import Density
-from .macroscopic.sweep import stand
+from .macroscopic.sweep import sweep
 from .macroscopic.wing import ClosedForm
 from .method import Kinetic, Macroscopic
 from .model.boundary import shown, streams
@@ -111,6 +111,14 @@ class Sliding(Stepper):
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
         super().__init__(scene, method)
         self._ground = flat(scene).numbers
+        self._ends = shown(scene.boundary, scene.cells.count)
+
+    def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
+        """Stand at U^n."""
+        now = self.now
+        stand(h, q, *self._ends, now.h, now.u, now.q)
+        self._fastest = self.wing.equilibrium(now)
+        return self._fastest
 
     def advance(self, dt: float) -> Books:
         """From where `begin` stood to U^{n+1}, (24)."""
@@ -138,13 +146,12 @@ class Swept(Sliding):
 
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
         super().__init__(scene, method)
-        self._ends = shown(scene.boundary, scene.cells.count)
         self._room = (np.zeros((2, TILE + 1)), TOP)
 
     def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
         """Stand at U^n, and sum up what leaves the cells, (24)."""
         now = self.now
-        self._fastest = stand(h, q, self._ground[2], *self._ends, now.h, now.u, now.q, *self._room, now.F1, now.F2)
+        self._fastest = sweep(h, q, self._ground[2], *self._ends, now.h, now.u, now.q, *self._room, now.F1, now.F2)
         return self._fastest
 
     def _fluxes(self) -> None:
@@ -157,12 +164,22 @@ class Settling(Sliding):
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
         super().__init__(scene, method)
         now, to = self.now, self.now.balanced
-        ends = shown(scene.boundary, scene.cells.count)
         states = (to.h_left, to.u_left, to.h_right, to.u_right)
         faces = (now.e, now.theta, now.still)
         seen = (now.low, now.high)
-        self._stand = (*self._ground, *ends, now.h, now.u, now.q, *faces, *states, now.held, *seen, TOP)
-        self._before = (now.h, now.q, to.h_left, to.h_right, *faces, *seen, now.F1, now.F2, *self._ground, *ends[2:])
+        self._stand = (*self._ground, *self._ends, now.h, now.u, now.q, *faces, *states, now.held, *seen, TOP)
+        self._before = (
+            now.h,
+            now.q,
+            to.h_left,
+            to.h_right,
+            *faces,
+            *seen,
+            now.F1,
+            now.F2,
+            *self._ground,
+            *self._ends[2:],
+        )
 
     def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
         """Stand at U^n, and judge the faces."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..kernel import kernel, kernel_part
 from .impulse import keep_dry, sliding
+from .stages import split
 from .update import move
 
 Array = NDArray[np.float64]
@@ -28,6 +29,17 @@ def show_ends(
         h[ghost] = h0[shown]
         u[ghost] = q0[shown] / h0[shown] if h0[shown] > 0.0 else 0.0
         u[ghost] = -u[ghost] if mirrored else u[ghost]
+
+
+@kernel
+def stand(
+    h0: Array, q0: Array, left: int, right: int, mirror_left: bool, mirror_right: bool, h: Array, u: Array, q: Array
+) -> None:
+    """Stand at (h0, q0): h, u with their ghosts, and q. The ghosts show the inner cells told, mirrored where told."""
+    show_ends(h0, q0, left, right, mirror_left, mirror_right, h, u)
+    split(h0, q0, h, u)
+    for i in range(q.size):
+        q[i] = q0[i]
 
 
 @kernel

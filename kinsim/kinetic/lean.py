@@ -85,8 +85,7 @@ class OnDemand(Density):
         if not self._velocity.fits(self.grid, self.reach + self._room):
             self._widen(self._velocity.grid(self.reach + self._room))
         self._lam = lam
-        np.copyto(self._h, now.h)
-        np.copyto(self._u, now.u)
+        self._h[:], self._u[:] = now.h, now.u
         self._made &= {"M"}
         self._stands = True
 

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 
 @kernel
-def stand(
+def sweep(
     h0: Array, q0: Array, beta: float, left: int, right: int, mirror_left: bool, mirror_right: bool,
     h: Array, u: Array, q: Array, m: Array, room: Array, F1: Array, F2: Array,
 ) -> float:  # fmt: skip

@@ -22,12 +22,16 @@ class Fault(NamedTuple):
     cell: int | None = None
 
 
-def find_fault(look: Survey, h: Array, q: Array, booked: Books, dx: float, first: float) -> Fault | None:
+def room_beside(first: float, dx: float) -> float:
+    """How large sums may become beside the mass in the beginning, to which they are compared."""
+    return LARGEST * min(first or 1.0, 1.0) / (8.0 * max(dx, 1.0))
+
+
+def find_fault(look: Survey, h: Array, q: Array, booked: Books, room: float) -> Fault | None:
     """Why a step to the state (h, q), each of shape (nx,), is not taken.
 
-    `booked` is what the books would show then, `first` the mass in the beginning, to which they are compared.
+    `booked` is what the books would show then; neither they nor sums over the cells may go beyond `room`.
     """
-    room = LARGEST * min(first or 1.0, 1.0) / (8.0 * max(dx, 1.0))
     most = h.size * max(look.h_max, -look.h_min, look.q_max)
     if look.bad < 0 and look.fastest <= FASTEST and most < room and sum(map(abs, booked)) < room:
         return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from operator import add
 
 import numpy as np
 
@@ -58,7 +59,7 @@ class Ledger:
         self._scene, self._stepper = scene, stepper
         self.lift = lift_of(scene)
         self._rows: list[dict[str, float]] = []
-        self._booked = [0.0] * len(Books._fields)
+        self._booked = Books(0.0, 0.0, 0.0, 0.0, 0.0)
         self._fallbacks = np.zeros(len(FALLBACKS), dtype=np.int64)
         self.least_height = math.inf
         self.least_density = 0.0
@@ -73,14 +74,13 @@ class Ledger:
         self._h_min, self._u_max = first.h_min, first.u_max
         self.save(h, q, started=False)
 
-    def note(self, look: Survey, courant: float, books: Books, density: Density | None) -> None:
-        """A step was taken, by cells with this density."""
+    def note(self, look: Survey, courant: float, booked: Books, density: Density | None) -> None:
+        """A step was taken, by cells with this density, after which the books show `booked`."""
         self._h_min, self._u_max = min(self._h_min, look.h_min), max(self._u_max, look.u_max)
         self._courant = max(self._courant, courant)
         self.least_height = min(self.least_height, look.h_min)
         self.worst_courant = max(self.worst_courant, courant)
-        for at, change in enumerate(books):
-            self._booked[at] += change
+        self._booked = booked
         if density is not None:
             self._f_min = min(self._f_min, density.least())
             self.least_density = min(self.least_density, self._f_min)
@@ -90,7 +90,7 @@ class Ledger:
 
     def with_these(self, books: Books) -> Books:
         """What the books show after a step with these."""
-        return Books(*(before + part for before, part in zip(self._booked, books, strict=True)))
+        return Books(*map(add, self._booked, books))
 
     def save(self, h: Array, q: Array, started: bool = True) -> None:
         """Make a row of what was noted since the row before."""
@@ -98,7 +98,7 @@ class Ledger:
         row = {
             "mass": math.fsum(h) * dx, "momentum": math.fsum(q) * dx,
             "h_min": self._h_min, "u_max": self._u_max, "courant": self._courant,
-            **Books(*self._booked)._asdict(),
+            **self._booked._asdict(),
             "held": dx * held(self._stepper.now) if started else 0.0,
         }  # fmt: skip
         density = self._stepper.density
@@ -135,7 +135,7 @@ class Ledger:
         """Go on from there."""
         names = kept["names"].tolist()
         self._rows = [dict(zip(names, row, strict=True)) for row in kept["rows"].tolist()]
-        self._booked, self._fallbacks = kept["booked"].tolist(), kept["fallbacks"]
+        self._booked, self._fallbacks = Books(*kept["booked"].tolist()), kept["fallbacks"]
         (self.least_height, self.least_density, self.worst_courant, self._h_min, self._f_min, self._u_max,
          self._courant, self._residual, iterations) = kept["since"].tolist()  # fmt: skip
         self._iterations = int(iterations)
