@@ -30,9 +30,9 @@ STEPS = 60
 LONG = 120_000
 """Milliseconds, for kernels that compile."""
 
-NUMBER = """() => {
+FRAMES = """() => {
   const found = Bokeh.documents.flatMap(doc => [...doc._all_models.values()]).find(model => model.name == "painted")
-  return [found.data.number[0], performance.now()]
+  return [found.data.frames[0], performance.now()]
 }"""
 
 
@@ -76,8 +76,8 @@ def measure(address: str, seconds: float, picture: Path | None) -> tuple[float, 
         play = page.locator(".play button")
         play.click()
         page.wait_for_timeout(1000)
-        (first, begun), _ = page.evaluate(NUMBER), page.wait_for_timeout(1e3 * seconds)
-        last, ended = page.evaluate(NUMBER)
+        (first, begun), _ = page.evaluate(FRAMES), page.wait_for_timeout(1e3 * seconds)
+        last, ended = page.evaluate(FRAMES)
         play.click()
         rate = 1e3 * (last - first) / (ended - begun)
         if picture:

@@ -37,12 +37,12 @@ SLOW = """
 import sys, time
 from kinsim.lab import prepare
 from kinsim.__main__ import main
-make = prepare.make
-prepare.make = lambda file: (time.sleep(4), make(file))[1]
+make, seconds = prepare.make, float(sys.argv.pop())
+prepare.make = lambda file: (time.sleep(seconds), make(file))[1]
 sys.argv[1:] = ["lab", "silo", "--no-browser"]
 main()
 """
-"""The same, as on a machine where kernels have to be compiled first."""
+"""The same, as on a machine where kernels have to be compiled first, for so many seconds."""
 
 
 @contextmanager
@@ -260,6 +260,10 @@ def test_wrong_settings_get_a_sentence(page, tmp_path):
     path.write_text("epsilon = ", encoding="utf-8")
     page.locator(".load input").set_input_files(path)
     expect(page.locator(".told .fault")).to_contain_text("wrong.toml: is not TOML")
+    empty = tmp_path / "empty.toml"
+    empty.touch()
+    page.locator(".load input").set_input_files(empty)
+    expect(page.locator(".told .fault")).to_contain_text("empty.toml: ")
 
 
 def test_a_click_chooses_the_cell(page):
@@ -270,14 +274,44 @@ def test_a_click_chooses_the_cell(page):
     assert re.search(r"Cut at x = [1-7]", page.locator(".cut-title h2").inner_text())
 
 
-def test_a_page_whose_run_is_still_being_made_says_so(chromium):
-    with serving(sys.executable, "-c", SLOW) as address:
+def test_a_page_whose_run_is_still_being_made_says_so_and_keeps_what_it_is_asked(chromium):
+    with serving(sys.executable, "-c", SLOW, "4") as address:
         page = chromium.new_page()
         page.goto(address)
         expect(page.locator(".told")).to_contain_text("Compiling the kernels of this method")
         assert page.locator(".now").count() == 0
-        expect(page.locator(".now")).to_contain_text("step 0")
-        expect(page.locator(".told .say")).to_have_count(0)
         press(page, "one")
         expect(page.locator(".now")).to_contain_text("step 1")
+        expect(page.locator(".told .say")).to_have_count(0)
+        page.locator(".scene select").select_option("riemann")
+        expect(page.locator(".told")).to_contain_text("Compiling the kernels of this method")
+        press(page, "next")
+        press(page, "next")
+        assert steps(page) == 1  # of the run before, which is not stepped under the name of the new one
+        expect(page.locator(".stage-told")).to_contain_text("2 Force")
+        expect(page.locator(".told .say")).to_have_count(0)
         page.close()
+
+
+def test_the_command_ends_while_kernels_compile(chromium):
+    with serving(sys.executable, "-c", SLOW, "3600") as address:
+        page = chromium.new_page()
+        page.goto(address)
+        expect(page.locator(".told")).to_contain_text("Compiling the kernels of this method")
+        page.close()
+
+
+def test_the_shaded_faces_are_those_that_the_scheme_sums_up(page):
+    options = page.locator(".faces option")
+    expect(options).to_have_text(["upwind face (19)", "balanced face (25)"])
+    page.locator(".knob-method-scheme select").select_option(label="4  ours: conservative, at rest")
+    expect(options).to_have_text(["held face of scheme 4", "upwind face (19)", "balanced face (25)"])
+    page.wait_for_timeout(500)
+    press(page, "one")
+    expect(page.locator(".now")).to_contain_text("step 1")
+    held = moments(page)
+    page.locator(".faces select").select_option(label="upwind face (19)")
+    expect(page.locator("tr[data-moment='I2']")).not_to_contain_text(held["I2"][2])
+    for cells in held.values():
+        difference, bound = (number(cell) for cell in cells[4:6])
+        assert abs(difference) <= bound

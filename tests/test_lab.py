@@ -13,14 +13,19 @@ from conftest import EPS, random_states
 from scipy.integrate import quad
 from test_cli import kinsim
 
-from kinsim import ConstantSlope, InputError, load_scene, printed, simulate, step
+from kinsim import ConstantSlope, InputError, Kinetic, load_scene, printed, simulate, step
+from kinsim.kinetic.equilibrium import EQUILIBRIA, Status
+from kinsim.kinetic.force import FORCES
+from kinsim.kinetic.velocity import Grid
 from kinsim.lab.books import TOLD, Ledger
-from kinsim.lab.cut import cut_at, error_bound
+from kinsim.lab.cut import cut_at, error_bound, faces_of
 from kinsim.lab.knobs import Slider, knobs_of
 from kinsim.lab.picture import image_of
 from kinsim.lab.play import STAGES, Play
 from kinsim.lab.prepare import make
 from kinsim.lab.setup import Setup
+from kinsim.lab.told import PUSHED, told
+from kinsim.macroscopic.half_moments import half_moments_closed
 from kinsim.read import built_in
 from kinsim.watch.causes import STAGES as CAUSES
 
@@ -38,6 +43,8 @@ METHODS = {
 }
 REFUSED = ("clock.number", "method.velocity.count", "boundary", "method.order")
 """Knobs whose ends may not go with the rest of a scene."""
+
+FIRST_TWO = ("upwind", "balanced")
 
 SMOOTH = "scheme 4 on a smooth chute"
 
@@ -126,9 +133,8 @@ def test_a_run_that_is_over_says_how():
     np.testing.assert_allclose(play.moment().exact_h, play.exact(play.scene.x, 0.5)[0])
 
 
-def test_moments_of_the_cut_keep_their_bound_and_match_quadrature(rng):
+def test_moments_of_the_cut_keep_their_bound_and_match_quadrature():
     """Closed forms against quadrature; sums over the shaded cells within what is proved; misprints as in the paper."""
-    beta, dxi = 0.4, 0.05
     setup = setup_of("riemann", *SMALL, ("heap.velocities.0", 0.6), ("heap.velocities.1", -0.2))
     play = make(setup.file)
     for _ in range(9):
@@ -158,8 +164,65 @@ def test_moments_of_the_cut_keep_their_bound_and_match_quadrature(rng):
     balanced = cut_at(play, moment, 30, "balanced").halves
     assert [half.misprinted for half in balanced] == [True, True, False, False]
     assert [half.name for half in balanced] == ["Ĩ1", "Ĩ2", "Ĩ3", "Ĩ4"]
-    for h_one, u_one in zip(*random_states(rng, 20), strict=True):
-        assert error_bound(True, h_one, u_one, beta, dxi) > 0.0
+
+
+@pytest.mark.parametrize("second", [False, True])
+def test_the_bound_of_a_shaded_sum_holds_and_is_near(rng, second):
+    """Sums over the averages of M in velocity cells that begin at 0, against the closed form, for many states."""
+    beta, dxi = 0.4, 0.05
+    grid = Grid(400, dxi)
+    weights = EQUILIBRIA["cell-average"].weights(grid)[second]
+    h, u = random_states(rng, 200)
+    rows = np.zeros((h.size, grid.count))
+    EQUILIBRIA["cell-average"].fill(h, u, h, u, beta, grid, rows, Status.empty(h.size))
+    share = []
+    for row, h_one, u_one in zip(rows, h, u, strict=True):
+        closed = half_moments_closed(h_one, u_one, beta)[second]
+        share.append(abs(row[grid.half :] @ weights - closed) / error_bound(second, h_one, u_one, beta, dxi))
+    assert 0.02 < max(share) <= 1.0
+
+
+@pytest.mark.parametrize("scene", ["silo-incline", "bend"])
+@pytest.mark.parametrize("stage", STAGES)
+def test_what_is_shaded_at_a_held_face_is_what_the_scheme_sums_up(scene, stage):
+    """The half-ranges of scheme 4, held or not, add up to the flux of a step from the state that is looked at."""
+    setup = setup_of(scene, *SMALL, ("method.scheme", 4), ("method.statics", "hold"))
+    play = make(setup.file)
+    for _ in range(12):
+        play.advance()
+    play.stage = stage
+    moment = play.moment()
+    shown = step(play.scene, play.method, moment.face_h, moment.face_h * moment.face_u, play.loop.dts[-1])
+    apart = 0
+    for cell in range(59):
+        cut = cut_at(play, moment, cell, "held")
+        sums = [half.summed for half in cut.halves]
+        still = shown.states.h_left[cell + 1] == shown.states.h_right[cell + 1] and moment.face_u[cell] == 0.0
+        near = sum(half.bound for half in cut.halves) if still else 1e-13  # still faces have their pressure exactly
+        assert sums[0] + sums[1] == pytest.approx(shown.flux[0, cell + 1], abs=1e-13)
+        assert sums[2] + sums[3] == pytest.approx(shown.flux[1, cell + 1], abs=near)
+        for half in cut.halves:
+            assert abs(half.summed - half.closed) <= half.bound
+        apart += [half.closed for half in cut.halves] != [half.closed for half in cut_at(play, moment, cell).halves]
+    assert apart > 0
+
+
+def test_the_faces_that_a_scheme_sums_up_come_first():
+    first = {1: "upwind", 2: "balanced", 3: "upwind", 4: "held"}
+    for scheme, states in first.items():
+        assert faces_of(Kinetic(scheme=scheme))[0] == states
+    assert faces_of(Kinetic(scheme=4, order=2)) == faces_of(Kinetic(scheme=4, statics="reflect")) == FIRST_TWO
+
+
+def test_each_stage_and_each_force_has_its_sentence():
+    assert set(PUSHED) == set(FORCES)
+    play = Play(setup_of("riemann", *SMALL, ("method.scheme", 4)).file)
+    assert "Start" in told(play.moment(), play.method, True)
+    play.advance()
+    play.stage = "force"
+    assert "(23)" in told(play.moment(), play.method, True)
+    assert "(18)" in told(play.moment(), replace(play.method, force="derivative-upwind"), True)
+    assert "nothing does" in told(play.moment(), play.method, play.scene.forced)
 
 
 def test_the_last_cell_shows_the_wall_on_its_left():

@@ -16,9 +16,15 @@ from ..kinetic.equilibrium import EQUILIBRIA
 from ..kinetic.velocity import Grid
 from ..local import at, varies
 from ..macroscopic.half_moments import half_moments_closed
+from ..method import Kinetic, Macroscopic
+from ..step import step
 from .play import Moment, Play
 
-FaceStates = Literal["upwind", "balanced"]
+FaceStates = Literal["upwind", "balanced", "held"]
+
+FACES: dict[FaceStates, str] = {
+    "upwind": "upwind face (19)", "balanced": "balanced face (25)", "held": "held face of scheme 4"
+}  # fmt: skip
 
 LINE = 241
 """Points of the curve of M."""
@@ -76,14 +82,19 @@ class Cut:
     halves: tuple[Half, ...]
 
 
+def faces_of(method: Kinetic | Macroscopic) -> tuple[FaceStates, ...]:
+    """Whose half-ranges can be looked at; those that the scheme itself sums up come first, where it has one kind."""
+    if method.scheme == 4 and method.order == 1 and method.statics == "hold":
+        return "held", "upwind", "balanced"
+    return ("balanced", "upwind") if method.scheme == 2 else ("upwind", "balanced")
+
+
 def cut_at(play: Play, moment: Moment, cell: int, states: FaceStates = "upwind") -> Cut:
     """The cut through `moment` at `cell`; the last cell shows the face on its left."""
     scene, grid = play.scene, play.density.grid
     cell = min(max(cell, 0), scene.cells.count - 1)
     left = min(cell, scene.cells.count - 2)
-    h, u = moment.face_h[left : left + 2], moment.face_u[left : left + 2]
-    if states == "balanced":
-        h = np.full(2, 0.5 * (h[0] + h[1]))
+    h, u = _face_states(play, moment, left, states)
     beta = np.broadcast_to(scene.beta, scene.cells.count)[left : left + 2]
     sides = (beta[:1].copy(), beta[1:].copy()) if varies(scene.beta) else scene.beta
     rows = play.face_rows(h[:1], u[:1], h[1:], u[1:], sides)
@@ -98,6 +109,18 @@ def cut_at(play: Play, moment: Moment, cell: int, states: FaceStates = "upwind")
     )  # fmt: skip
 
 
+def _face_states(play: Play, moment: Moment, left: int, states: FaceStates) -> tuple[Array, Array]:
+    """Heights and velocities on both sides of the right wall of cell `left`."""
+    h, u = moment.face_h[left : left + 2], moment.face_u[left : left + 2]
+    if states == "balanced":
+        return np.full(2, 0.5 * (h[0] + h[1])), u
+    if states == "held":  # what is held depends on no time step
+        shown = step(play.scene, play.method.twin, moment.face_h, moment.face_h * moment.face_u, play.scene.cells.dx)
+        assert shown.states is not None
+        return np.array([of[left + 1] for of in (shown.states.h_left, shown.states.h_right)]), u
+    return h, u
+
+
 def _halves(
     play: Play, row: Array, grid: Grid, h: Array, u: Array, beta: Array, states: FaceStates
 ) -> tuple[Half, ...]:
@@ -107,8 +130,8 @@ def _halves(
     left, right = (half_moments_closed(float(h[k]), float(u[k]), float(beta[k])) for k in (0, 1))
     closed = (left[0], right[2], left[1], right[3])
     as_printed = _printed(h, u, beta, states)
-    name = "I" if states == "upwind" else "Ĩ"
-    told = ("ξ M over ξ > 0", "ξ M over ξ < 0", "ξ² M over ξ > 0", "ξ² M over ξ < 0")
+    name = "Ĩ" if states == "balanced" else "I"
+    told = ("ξ M, ξ > 0", "ξ M, ξ < 0", "ξ² M, ξ > 0", "ξ² M, ξ < 0")
     averaged = play.method.equilibrium == "cell-average"
     halves = []
     for k in range(4):
@@ -142,7 +165,7 @@ def _printed(h: Array, u: Array, beta: Array, states: FaceStates) -> tuple[float
     first: tuple[Callable[..., float], ...] = (printed.I1, printed.I2, printed.I3, printed.I4)
     if states == "balanced":
         first = (printed.I1_tilde, printed.I2_tilde, printed.I3_tilde, printed.I4_tilde)
-    beyond = {"u_left": u0} if states == "upwind" else {}
+    beyond = {} if states == "balanced" else {"u_left": u0}
     return (
         first[0](h0, u0, b0) if h0 > 0.0 else 0.0,
         first[1](h1, u1, b1) if h1 > 0.0 else 0.0,

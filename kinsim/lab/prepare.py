@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
+from threading import Thread
 
 from ..read import SceneFile
 from .books import Ledger
-from .cut import cut_at
+from .cut import cut_at, faces_of
 from .play import STAGES, Play
 
-_aside = ThreadPoolExecutor(max_workers=1, thread_name_prefix="kinsim-lab")
 _compiled: set[tuple[object, ...]] = set()
 
 
@@ -23,12 +23,22 @@ def make(file: SceneFile) -> Play:
         rehearsal = Play(file)
         for _ in STAGES:
             rehearsal.next_stage()
-            cut_at(rehearsal, rehearsal.moment(), 0)
+            for states in faces_of(rehearsal.method):
+                cut_at(rehearsal, rehearsal.moment(), 0, states)
         Ledger(rehearsal).books()
         _compiled.add(kind)
     return Play(file)
 
 
 def make_aside(file: SceneFile, done: Callable[[Future[Play]], None]) -> None:
-    """The same in a thread; `done` gets it there."""
-    _aside.submit(make, file).add_done_callback(done)
+    """The same in a thread that nobody waits for when the command ends; `done` gets it there."""
+    made: Future[Play] = Future()
+    made.add_done_callback(done)
+
+    def work() -> None:
+        try:
+            made.set_result(make(file))
+        except Exception as error:
+            made.set_exception(error)
+
+    Thread(target=work, daemon=True, name="kinsim-lab").start()

@@ -137,7 +137,7 @@ class History:
 
     def __init__(self) -> None:
         self._source = ColumnDataSource({name: [] for name in ("t", *COLUMNS)})
-        self.figure = plain(x_axis_label="time t", y_axis_label="change since start")
+        self.figure = plain(x_axis_label="time t", y_axis_label="change")
         looks = zip(COLUMNS, (GREEN, BLUE, ORANGE), ("solid", "dashed", "dotdash"), strict=True)
         for name, colour, dash in looks:
             self.figure.line("t", name, source=self._source, color=colour, line_dash=dash, line_width=2)
@@ -164,11 +164,12 @@ class History:
 def plain(**axes: Any) -> Any:
     """A figure without tools that only a tap reaches."""
     made = figure(
-        toolbar_location=None, tools="tap", sizing_mode="stretch_both", min_height=120, output_backend="canvas",
+        toolbar_location=None, tools="tap", sizing_mode="stretch_both", min_height=90, output_backend="canvas",
         x_range=Range1d(0, 1), y_range=Range1d(0, 1), **axes,
     )  # fmt: skip
     made.background_fill_color, made.border_fill_color, made.outline_line_color = "white", "white", "#cccccc"
     made.xgrid.grid_line_alpha = made.ygrid.grid_line_alpha = 0.5
+    made.xaxis.visible = "x_axis_label" in axes
     for axis in (*made.xaxis, *made.yaxis):
         axis.axis_label_text_font_style, axis.axis_label_text_font_size = "normal", "13px"
         axis.major_label_text_font_size, axis.axis_label_standoff = "12px", 4

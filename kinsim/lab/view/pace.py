@@ -1,4 +1,4 @@
-"""No picture is sent before the browser has painted the one before."""
+"""No more pictures are on their way than the one that the browser paints and the next one."""
 
 from __future__ import annotations
 
@@ -11,10 +11,20 @@ from bokeh.models import ColumnDataSource, CustomJS
 LEAST = 1.0 / 30.0
 """Seconds between two pictures, at least."""
 
+AHEAD = 2
+"""Pictures on their way, at most: while the browser paints one, the next is made."""
+
 PAINTED = """
-requestAnimationFrame(() => requestAnimationFrame(() => { painted.data = {number: [cb_obj.data.number[0]]} }))
+const number = cb_obj.data.number[0]
+requestAnimationFrame(() => requestAnimationFrame(now => {
+  const {frames, at} = painted.data
+  painted.data = {number: [number], frames: [frames[0] + (now > at[0])], at: [now]}
+}))
 """
-"""The browser says which picture it has painted; a hidden tab paints none, and so the run waits for it."""
+"""The browser says which picture it has painted, and how many frames that took: two that it painted at once are one.
+
+A hidden tab paints none, and so the run waits for it.
+"""
 
 
 class Pace:
@@ -25,18 +35,19 @@ class Pace:
     """
 
     def __init__(self, painted: Callable[[], None]) -> None:
-        self._sent = self._seen = 0
+        self._sent = self._seen = self._frames = 0
         self._at = 0.0
         self._times: deque[float] = deque(maxlen=20)
         self._call = painted
-        self.ticket, back = ColumnDataSource({"number": [0]}), ColumnDataSource({"number": [0]}, name="painted")
+        self.ticket = ColumnDataSource({"number": [0]})
+        back = ColumnDataSource({"number": [0], "frames": [0], "at": [0.0]}, name="painted")
         self.ticket.js_on_change("data", CustomJS(args={"painted": back}, code=PAINTED))
-        back.on_change("data", lambda name, old, new: self._painted(new["number"][0]))
+        back.on_change("data", lambda name, old, new: self._painted(new["number"][0], new["frames"][0]))
 
     @property
     def free(self) -> bool:
-        """Whether the browser waits for a picture."""
-        return self._seen >= self._sent
+        """Whether another picture may be made."""
+        return self._sent - self._seen < AHEAD
 
     @property
     def rest(self) -> float:
@@ -60,7 +71,9 @@ class Pace:
         self._times.clear()
         self._seen = self._sent
 
-    def _painted(self, number: int) -> None:
-        self._seen = number
-        self._times.append(time.perf_counter())
+    def _painted(self, number: int, frames: int) -> None:
+        self._seen = max(number, self._seen)
+        if frames > self._frames:
+            self._frames = frames
+            self._times.append(time.perf_counter())
         self._call()

@@ -12,10 +12,12 @@ import panel as pn
 from bokeh.events import ConnectionLost, Tap
 from bokeh.models import CustomJS
 from panel.io.document import unlocked
+from tornado.ioloop import IOLoop
 
 from ...errors import InputError
 from ...read import built_in
 from ...run import ENDED
+from ..cut import faces_of
 from ..play import Play
 from ..prepare import make_aside
 from ..setup import Setup
@@ -30,7 +32,7 @@ BUDGET = 0.04
 PATIENCE = 300
 """Milliseconds after which a run that is still being made gets a word."""
 
-COMPILING = "Compiling the kernels of this method; that takes a few seconds, once on this machine …"
+COMPILING = "Compiling the kernels of this method; that takes up to half a minute, once on this machine …"
 
 
 class Page:
@@ -38,10 +40,12 @@ class Page:
 
     def __init__(self, start: Setup) -> None:
         self._doc: Any = pn.state.curdoc
+        self._loop = IOLoop.current()
         self._setup = self._origin = start
         self._setups = {start.name: start}
         self._play: Play | None = None
         self._wanted: Setup | None = None
+        self._asked: list[Callable[[Play], bool]] = []
         self._busy = self._gone = False
         self._pace = Pace(self._pump)
         self._widgets = Widgets(list(dict.fromkeys([start.name, *built_in()])), start.name, self._file)
@@ -56,7 +60,7 @@ class Page:
 
     def take(self, setup: Setup) -> None:
         """Run what a setup says, from its start; where it is refused say why, and keep the last run on the page."""
-        self._setup = setup
+        self._setup, self._asked = setup, []
         self._controls.fit(setup)
         for widget in self._widgets.runs:
             widget.disabled = bool(setup.refusal)
@@ -66,6 +70,7 @@ class Page:
             return
         self._wanted = setup
         self._painter.say(" ".join(setup.notes))
+        self._doc.add_timeout_callback(self._still_busy, PATIENCE)
         self._prepare()
 
     def _connect(self) -> None:
@@ -76,10 +81,13 @@ class Page:
         for name in ("density", "height", "velocity"):
             figures[name].on_event(Tap, self._tapped)
         for widget, act in (
-            (w.scene, self._named), (w.load, self._loaded), (w.play, self._played), (w.stage, self._looked),
+            (w.scene, self._named), (w.play, self._played), (w.stage, self._looked),
             (w.printed, lambda value: self.draw()), (w.faces, lambda value: self.draw()),
         ):  # fmt: skip
             widget.param.watch(lambda event, act=act: act(event.new), "value")
+        w.load.param.watch(
+            lambda *events: self._loaded(w.load.value or b"", str(w.load.filename)), ["value", "filename"]
+        )
         w.step.on_click(lambda event: self._by_hand(Play.advance))
         w.next_stage.on_click(lambda event: self._by_hand(Play.next_stage))
         w.over.on_click(lambda event: self.take(self._setup))
@@ -102,12 +110,17 @@ class Page:
         if self._busy or self._wanted is None:
             return
         setup, self._wanted, self._busy = self._wanted, None, True
-        self._doc.add_timeout_callback(self._still_busy, PATIENCE)
-        make_aside(setup.file, lambda made: self._doc.add_next_tick_callback(lambda: self._ready(setup, made)))
+
+        def later(made: Future[Play]) -> None:
+            self._doc.add_next_tick_callback(lambda: self._ready(setup, made))
+
+        # by way of the loop, for a document that is still being made loses what another thread hands to it
+        make_aside(setup.file, lambda made: self._loop.add_callback(later, made))
 
     def _still_busy(self) -> None:
-        if self._busy and not self._gone and not self._painter.said:
-            self._painter.say(COMPILING, "busy")
+        notes = " ".join(self._setup.notes)
+        if self._busy and not self._gone and self._painter.said == notes:
+            self._painter.say(f"{notes} {COMPILING}".strip(), "busy")
 
     def _ready(self, setup: Setup, made: Future[Play]) -> None:
         """A run is there, or could not be made."""
@@ -122,12 +135,17 @@ class Page:
         except (InputError, MemoryError) as error:
             self._fault(error)
             return
-        if self._painter.said == COMPILING:
+        if COMPILING in self._painter.said:
             self._painter.say(" ".join(setup.notes))
         play.stage = self._widgets.stage.value
         self._play = play
         with unlocked():
             self._painter.begin(play)
+        self._widgets.offer(faces_of(play.method))
+        for way in self._asked:
+            self._go(play, way)
+        self._asked = []
+        self._widgets.stage.value = play.stage
         self.draw()
 
     def _pump(self) -> None:
@@ -145,6 +163,8 @@ class Page:
             if time.perf_counter() - begun > BUDGET:
                 break
         self.draw()
+        if self._pace.free:
+            self._doc.add_next_tick_callback(self._pump)
 
     def _go(self, play: Play, way: Callable[[Play], bool]) -> bool:
         """Go on by a step or a stage; tell how a run ended."""
@@ -172,13 +192,15 @@ class Page:
 
     def _by_hand(self, way: Callable[[Play], bool]) -> None:
         self._halt()
-        if self._play is not None:
+        if self._busy:
+            self._asked.append(way)
+        elif self._play is not None:
             self._go(self._play, way)
             self._widgets.stage.value = self._play.stage
             self.draw()
 
     def _looked(self, stage: Any) -> None:
-        if self._play is not None and self._play.stage != stage:
+        if self._play is not None and not self._busy and self._play.stage != stage:
             self._play.stage = stage
             self.draw()
 
@@ -200,12 +222,11 @@ class Page:
         except InputError as error:
             self._fault(error)
             return
+        self._painter.forget()
         self.take(self._origin)
 
-    def _loaded(self, content: bytes | None) -> None:
-        if not content:
-            return
-        scene, name = self._widgets.scene, str(self._widgets.load.filename or "file")
+    def _loaded(self, content: bytes, name: str) -> None:
+        scene = self._widgets.scene
         try:
             self._setups[name] = Setup.of_content(content, name)
         except InputError as error:

@@ -10,6 +10,7 @@ from ..books import Ledger
 from ..cut import Cut, FaceStates, cut_at
 from ..picture import peak_of, steepest
 from ..play import Moment, Play
+from ..told import told
 from .charts import Curve, Density, History, Slice
 from .tables import ledger_table, minus, moments_table
 from .widgets import Widgets
@@ -17,19 +18,9 @@ from .widgets import Widgets
 WRITTEN = 0.25
 """Seconds between two looks at the numbers while it plays; nobody reads them at the pace of pictures."""
 
-STAGE_TOLD = {
-    "start": "<b>Start.</b> The velocities in each cell are those of the equilibrium M(h, ξ - u), a semicircle, (12).",
-    "transport": "<b>1 Transport.</b> Particles move at their own velocity ξ through the walls of the cells: "
-    "f = M - λ ξ (M<sub>i+½</sub> - M<sub>i-½</sub>), (23). f is no semicircle any more.",
-    "force": "<b>2 Force.</b> Gravity and friction accelerate all particles of a cell alike: "
-    "f moves along ξ by Δt g, (21) to (23).",
-    "projection": "<b>3 Projection.</b> Only mass and momentum of f are kept, (20); M of these is where the next step "
-    "begins.",
-}
-
 
 class Painter:
-    """The pictures of one page, and the cell that was clicked."""
+    """The pictures of one page, and the place that was clicked."""
 
     def __init__(self, widgets: Widgets) -> None:
         self._widgets = widgets
@@ -39,7 +30,8 @@ class Painter:
             "density": self._density, "height": self._height, "velocity": self._velocity, "slice": self._slice,
             "history": self._history,
         }  # fmt: skip
-        self._cell, self._written = -1, 0.0
+        self._place: float | None = None
+        self._cell, self._written = 0, 0.0
         self.said = ""
 
     @property
@@ -51,17 +43,19 @@ class Painter:
         """Make room for a new run."""
         moment = play.moment()
         self._ledger = Ledger(play)
-        if not 0 <= self._cell < moment.h.size:
-            self._cell = steepest(moment)
+        self._cell = steepest(moment) if self._place is None else _cell_at(play, self._place)
         for chart in self._charts.values():
             chart.begin(play, moment)
         top = f"{peak_of(play, moment):.2g}"
         self._write("scale", f'<span class="bar">0 <i></i> {top}, <b>orange</b> where f &lt; 0</span>')
 
     def choose(self, play: Play, x: float) -> None:
-        """The cell at a place."""
-        cells = play.scene.cells
-        self._cell = min(max(int((x - cells.left) / cells.dx), 0), cells.count - 1)
+        """Cut at a place, in this run and in those that come."""
+        self._place, self._cell = x, _cell_at(play, x)
+
+    def forget(self) -> None:
+        """Cut where the next run is steepest."""
+        self._place = None
 
     def show(self, play: Play, states: FaceStates, printed: bool, words: bool, rate: float) -> None:
         """Draw where the run stands; the words only if asked for, or when they are old."""
@@ -73,25 +67,29 @@ class Painter:
         now = time.perf_counter()
         if words or now - self._written > WRITTEN:
             self._written = now
-            self._tell(moment, cut, printed, rate)
+            self._tell(play, moment, cut, printed, rate)
 
     def say(self, line: str, css: str = "") -> None:
         """A sentence to the user, in place of the one before."""
         self.said = line
         self._write("told", f'<div class="say {css}">{escape(line)}</div>' if line else "")
 
-    def _tell(self, moment: Moment, cut: Cut, printed: bool, rate: float) -> None:
+    def _tell(self, play: Play, moment: Moment, cut: Cut, printed: bool, rate: float) -> None:
         books = self._ledger.books()
         self._history.show(moment, books)
         self._write("moments", moments_table(cut, printed))
         self._write("books", ledger_table(books, moment.stage if moment.step else None))
         places = minus(f"Cut at x = {cut.x:.3g}, and its wall at {cut.face_x:.3g}")
         self._write("cut-title", f"<h2>{places} <small>click above for another cell</small></h2>")
-        stage = STAGE_TOLD[moment.stage if moment.step else "start"]
-        self._write("stage-told", f'<p class="stage">{minus(stage)}</p>')
+        self._write("stage-told", f'<p class="stage">{minus(told(moment, play.method, play.scene.forced))}</p>')
         pace = f" &nbsp; {rate:.0f} pictures/s" if rate else ""
         now = f"t = <b>{moment.t:.3f}</b> &nbsp; step <b>{moment.step}</b>{pace}"
         self._widgets.where.object = f'<span class="now">{now}</span>'
 
     def _write(self, name: str, html: str) -> None:
         self._widgets.texts[name].object = html
+
+
+def _cell_at(play: Play, x: float) -> int:
+    cells = play.scene.cells
+    return min(max(int((x - cells.left) / cells.dx), 0), cells.count - 1)

@@ -14,7 +14,7 @@ MINUS = "\N{MINUS SIGN}"
 
 def moments_table(cut: Cut, misprinted: bool) -> str:
     """I1 to I4 as sums over what is shaded, in closed form, and, if wanted, as printed."""
-    heads = ["", "", "shaded sum", "closed form", "difference", "proved bound"]
+    heads = ["", "", "shaded", "closed form", "difference", "bound"]
     rows = "".join(_moment(half, misprinted) for half in cut.halves)
     if misprinted:
         heads.append("as printed")

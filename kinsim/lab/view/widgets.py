@@ -8,6 +8,7 @@ from typing import Any
 
 import panel as pn
 
+from ..cut import FACES, FaceStates
 from ..play import STAGES
 
 TEMPLATE, SHEET = ((Path(__file__).parent / name).read_text(encoding="utf-8") for name in ("page.html", "page.css"))
@@ -46,10 +47,7 @@ class Widgets:
         self.printed = pn.widgets.Checkbox(
             name="beside the paper's formulas as printed", margin=(2, 10), css_classes=["printed"]
         )
-        self.faces = pn.widgets.Select(
-            options={"upwind face (19)": "upwind", "balanced face (25)": "balanced"}, width=170, margin=(0, 6),
-            css_classes=["faces"],
-        )  # fmt: skip
+        self.faces = pn.widgets.Select(width=170, margin=(0, 6), css_classes=["faces"])
         self.where = text("where", margin=(0, 8), sizing_mode="fixed", width=236, height=24)
         names = ("told", "stage-told", "moments", "books", "cut-title", "scale")
         self.texts = {name: text(name) for name in names}
@@ -58,6 +56,12 @@ class Widgets:
     def runs(self) -> list[Any]:
         """Those that need a setting which can be run."""
         return [self.play, self.step, self.next_stage, self.over, self.save]
+
+    def offer(self, faces: Sequence[FaceStates]) -> None:
+        """Let these faces be chosen; where others can be than so far, the first is."""
+        options: dict[str, FaceStates] = {FACES[states]: states for states in faces}
+        if options != self.faces.options:
+            self.faces.param.update(options=options, value=faces[0])
 
     def template(self, knobs: Any, charts: Mapping[str, Any]) -> Any:
         """The page with all its parts in place."""

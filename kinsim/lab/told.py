@@ -1,0 +1,36 @@
+"""What a stage of a step does, in a sentence with the equation that it takes."""
+
+from __future__ import annotations
+
+from ..method import Kinetic
+from .play import Moment
+
+START = "<b>Start.</b> The velocities in each cell are those of the equilibrium M(h, ξ - u), a semicircle, (12)."
+
+TRANSPORT = (
+    "<b>1 Transport.</b> Particles move at their own velocity ξ through the walls of the cells: "
+    "f = M - λ ξ (M<sub>i+½</sub> - M<sub>i-½</sub>), (23). f is no semicircle any more."
+)
+
+FORCE = "<b>2 Force.</b> Gravity and friction accelerate all particles of a cell alike: "
+
+PUSHED = {
+    "shift-linear": "f moves along ξ by Δt g, (21) to (23), between two nodes in proportion.",
+    "shift-pfc": "f moves along ξ by Δt g, (21) to (23), along limited parabolas between the nodes.",
+    "shift-exact": "f moves along ξ by Δt g, (21) to (23), and its nodes with it.",
+    "derivative-upwind": "f changes by Δt g times its slope along ξ, (18), taken on the side it comes from.",
+    "derivative-centred": "f changes by Δt g times its slope along ξ, (18), taken on both sides.",
+}
+
+PROJECTION = (
+    "<b>3 Projection.</b> Only mass and momentum of f are kept, (20); M of these is where the next step begins."
+)
+
+
+def told(moment: Moment, method: Kinetic, forced: bool) -> str:
+    """The stage that a moment shows, as HTML; `forced` says whether anything pulls or brakes."""
+    if not moment.step:
+        return START
+    if moment.stage == "force":
+        return FORCE + (PUSHED[method.force] if forced else "here nothing does, and f stays as it is.")
+    return TRANSPORT if moment.stage == "transport" else PROJECTION
