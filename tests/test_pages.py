@@ -14,6 +14,7 @@ ROOT = Path(__file__).parents[1]
 CHANGES, CITATION, CONTRIBUTING = (
     (ROOT / name).read_text(encoding="utf-8") for name in ("CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md")
 )
+GUIDES = ("contributing.md", "how-to/add-a-room.md")
 
 
 def test_they_name_this_version():
@@ -29,6 +30,7 @@ def test_the_commands_they_name_exist(page):
 
 
 def test_the_files_that_the_guide_names_exist():
-    named = re.findall(r"`([\w.]+(?:/[\w.]+)+)`", CONTRIBUTING)
-    assert len(named) >= 5
+    pages = [CONTRIBUTING, *((ROOT / "docs" / page).read_text(encoding="utf-8") for page in GUIDES)]
+    named = [name for page in pages for name in re.findall(r"`([\w.-]+(?:/[\w.-]+)+)`", page)]
+    assert len(named) >= 12
     assert [name for name in named if not (ROOT / name).exists()] == []
