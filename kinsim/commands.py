@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from .shell import EXIT_CODES, Force, Quiet, SceneName, Settings, keep_apart, read_scene
+from .shell import EXIT_CODES, Force, Quiet, SceneName, Settings, keep_apart, read_scene, resumable
 
 Resume = Annotated[bool, typer.Option("--resume", help="Take what was finished before, and do the rest.")]
 
@@ -47,9 +47,10 @@ def sweep(
     from .studies.vary import read_over
 
     file = read_scene(name, settings, None)
-    check_study_file(out)
+    check_study_file(out, field or ())
     keep_apart(name, out)
-    with Watched(quiet) as progress:
+    members = Path(f"{out}.members")
+    with resumable(members), Watched(quiet) as progress:
         found = study(
             file.scene,
             file.method,
@@ -59,13 +60,13 @@ def sweep(
             fields=field or (),
             save_every=saved_every(file),
             force=force,
-            keep=f"{out}.members",
+            keep=members,
             resume=resume,
             workers=workers,
             scheduler=scheduler,
             tell=progress.tell,
         )
-    write_study(found, out)
+        write_study(found, out)
     if not quiet:
         study_report(found, out)
     raise typer.Exit(max(EXIT_CODES.get(kind, 1) for kind in found["verdict_kind"].to_numpy().ravel().tolist()))
@@ -104,14 +105,15 @@ def trade(
     check_destination(out)
     table, picture = out.with_suffix(".csv"), check_picture(out.with_suffix(".png"))
     keep_apart(name, out, table, picture)
-    with Watched(quiet) as progress:
+    members = Path(f"{out}.members")
+    with resumable(members), Watched(quiet) as progress:
         measured = trade(
-            file.scene, file.method, file.clock, lines=line, repeats=repeats, keep=f"{out}.members", resume=resume,
+            file.scene, file.method, file.clock, lines=line, repeats=repeats, keep=members, resume=resume,
             tell=progress.tell,
         )  # fmt: skip
-    write_netcdf(measured, out)
-    write_text(measured.to_dataframe().to_csv(index=False), table)
-    plot_trade(measured, picture)
+        write_netcdf(measured, out)
+        write_text(measured.to_dataframe().to_csv(index=False), table)
+        plot_trade(measured, picture)
     if not quiet:
         trade_report(measured, [out, table, picture])
 

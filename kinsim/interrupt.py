@@ -1,9 +1,11 @@
-"""Ctrl-C and SIGTERM between two steps, never within one."""
+"""Ctrl-C and SIGTERM: alike, and within the time loop between two steps, never within one."""
 
 from __future__ import annotations
 
 import signal
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import FrameType, TracebackType
 from typing import Any, Self
 
@@ -31,3 +33,16 @@ class Deferred:
         if self.asked:
             raise KeyboardInterrupt
         self.asked = True
+
+
+@contextmanager
+def terminable() -> Iterator[None]:
+    """While open, SIGTERM interrupts as Ctrl-C does; outside the main thread nothing is changed."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    usual = signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGTERM, usual)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from .errors import InputError
+from .interrupt import terminable
 
 if TYPE_CHECKING:
     from .read import SceneFile
@@ -39,15 +40,26 @@ EXIT_CODES = {"finished": 0, "at-rest": 0, "interrupted": 130}
 
 @contextmanager
 def told() -> Iterator[None]:
-    """Bad input is told in one line, without a traceback."""
+    """Bad input is told in one line, without a traceback, and so are Ctrl-C and SIGTERM."""
     try:
-        yield
+        with terminable():
+            yield
     except InputError as error:
         complain(str(error), 2)
     except MemoryError:
         complain("not enough memory; take fewer cells or velocity nodes", 2)
     except KeyboardInterrupt as interrupt:
         complain(f"interrupted; {str(interrupt) or 'nothing was written'}", 130)
+
+
+@contextmanager
+def resumable(folder: Path | None) -> Iterator[None]:
+    """An interrupt between two members says, too, where finished ones are; `folder` is None where none are kept."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        where = f"finished members are kept in {folder}; --resume does the rest" if folder else ""
+        raise KeyboardInterrupt(str(interrupt) or where) from None
 
 
 def complain(line: str, code: int) -> None:

@@ -63,11 +63,15 @@ def validate(
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"{out}: no folder can be made there ({error.strerror}); name another") from None
-    records = []
-    for number, script in enumerate(scripts):
-        if told:
-            told(script.stem, number / len(scripts))
-        records.append(_run(script, out, full))
+    records: list[dict[str, Any]] = []
+    try:
+        for number, script in enumerate(scripts):
+            if told:
+                told(script.stem, number / len(scripts))
+            records.append(_run(script, out, full))
+    except KeyboardInterrupt:
+        done = f"{len(records)} of {len(scripts)} scripts are done, what they found is in {out}"
+        raise KeyboardInterrupt(f"{done}; --only NAME runs each of the others") from None
     (out / "index.html").write_text(page(records, out), encoding="utf-8")
     (out / "claims.md").write_text(chapters_table(records) + "\n" + claims_table(records), encoding="utf-8")
     return records

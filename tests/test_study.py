@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import psutil
 import pytest
 import xarray
 from typer.testing import CliRunner
@@ -260,6 +261,66 @@ def test_a_sweep_as_a_table(tmp_path: Path) -> None:
     refused = CliRunner().invoke(app, [*words, str(tmp_path / "x.txt")])
     assert (refused.exit_code, refused.stderr.count("\n")) == (2, 1)
     assert ".nc" in refused.stderr
+    unkept = CliRunner().invoke(app, [*words, str(tmp_path / "y.csv"), "--field", "h", "--field", "mass"])
+    assert (unkept.exit_code, unkept.stderr.count("\n")) == (2, 1)
+    assert "no room for --field h --field mass; write" in unkept.stderr
+    assert "y.nc" in unkept.stderr
+    assert not list(tmp_path.glob("y*"))
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (
+            ["sweep", "silo", "--over", "chute.zeta=0,0.1,0.2"],
+            "1 of 3 members are done, kept in out.nc.members; --resume",
+        ),
+        (["trade", "silo", "--line", "fitted"], "1 of 2 members are done, kept in out.nc.members; --resume"),
+        (["atlas", "--axis", "zeta", "--keep", "kept"], "members are done, kept in kept; --resume"),
+    ],
+    ids=lambda one: one[0] if isinstance(one, list) else "",
+)
+def test_sigterm_ends_a_command_as_ctrl_c_does(
+    words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Between two members, where no time loop waits for it: what is finished is kept, and a line says so."""
+    monkeypatch.chdir(tmp_path)
+    done: list[str] = []
+
+    def second_is_ended(member: Member, progress: object = None) -> record.Record:
+        if done:
+            signal.raise_signal(signal.SIGTERM)
+        done.append(member.key)
+        return perform(member)
+
+    monkeypatch.setattr(engine, "perform", second_is_ended)
+    size = ["--set", "cells.count=40", "--set", "clock.steps=3", "--set", "method.kind=macroscopic"]
+    ended = CliRunner().invoke(app, [*words, *([] if words[0] == "atlas" else size), "--out", "out.nc", "--quiet"])
+    assert (ended.exit_code, ended.stderr.count("\n")) == (130, 1), ended.stderr
+    assert said in ended.stderr
+    assert [kept.stem for kept in tmp_path.glob("*/*.npz")] == done
+    assert signal.getsignal(signal.SIGTERM) == signal.SIG_DFL
+
+
+def test_sigterm_stops_the_workers_too(tmp_path: Path) -> None:
+    """A sweep in processes of its own: those are gone, and what they finished is taken by --resume."""
+    words = ["sweep", "silo", "--over", "chute.zeta=0:0.3:8", "--set", "clock.dt=1e-4", "--set", "clock.steps=2000"]
+    words += ["--set", "method.kind=macroscopic", "--workers", "1", "--quiet"]
+    command = [sys.executable, "-m", "kinsim", *words]
+    with subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True) as one:
+        given_up = time.monotonic() + WAIT
+        while not list(tmp_path.glob("sweep.nc.members/*.npz")) and one.poll() is None:
+            assert time.monotonic() < given_up
+            time.sleep(0.02)
+        workers = psutil.Process(one.pid).children(recursive=True)
+        one.send_signal(signal.SIGTERM)
+        said = one.communicate(timeout=WAIT)[1]
+    assert one.returncode == 130, said
+    assert "of 8 members are done, kept in sweep.nc.members; --resume" in said
+    assert workers
+    while any(each.is_running() and each.status() != psutil.STATUS_ZOMBIE for each in workers):
+        assert time.monotonic() < given_up, workers
+        time.sleep(0.02)
 
 
 def test_ctrl_c_while_workers_start_waits_for_them(monkeypatch: pytest.MonkeyPatch, capfd: object) -> None:

@@ -201,3 +201,13 @@ def test_bad_requests_get_one_line(checkout: Path, monkeypatch: pytest.MonkeyPat
     assert (done.exit_code, done.stderr.count("\n")) == (2, 1)
     monkeypatch.chdir(checkout)
     assert "run this in a checkout" in CliRunner().invoke(app, ["validate"]).stderr
+
+
+def test_sigterm_in_the_second_script_keeps_what_the_first_found(checkout: Path) -> None:
+    """The second ends kinsim, which says so in a line; the script that runs is ended with it."""
+    (checkout / "zzz.py").write_text("import os, signal, time\nos.kill(os.getppid(), signal.SIGTERM)\ntime.sleep(60)\n")
+    command = [sys.executable, "-m", "kinsim", "validate", "--out", "out"]
+    ended = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (ended.returncode, ended.stderr.count("\n")) == (130, 1), ended.stderr
+    assert "interrupted; 1 of 2 scripts are done, what they found is in out" in ended.stderr
+    assert Path("out/good.json").exists()

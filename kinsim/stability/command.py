@@ -35,7 +35,7 @@ def atlas(
     from ..progress import Watched
     from ..read import read_method
     from ..report_many import atlas_report
-    from ..shell import keep_apart
+    from ..shell import keep_apart, resumable
     from ..store import check_destination, write_netcdf
     from .atlas import atlas
     from .axes import USUAL
@@ -52,7 +52,7 @@ def atlas(
         check_picture(plot)
     keep_apart(out, plot)
     asked = [*(axis or (() if planes else USUAL)), *((one, two) for one, two in planes)]
-    with Watched(quiet) as progress:
+    with resumable(keep), Watched(quiet) as progress:
         found = atlas(method, asked, steps=steps, keep=keep, resume=resume, workers=workers, tell=progress.tell)
     if out:
         write_netcdf(found, out)

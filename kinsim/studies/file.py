@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,14 +13,17 @@ if TYPE_CHECKING:
     import xarray
 
 
-def check_study_file(path: str | Path) -> Path:
-    """`path`, if a study can be written there.
+def check_study_file(path: str | Path, fields: Sequence[str] = ()) -> Path:
+    """`path`, if a study can be written there, with its fields.
 
     Raises:
-        InputError: It is neither .nc nor .csv, or no file can be put there.
+        InputError: It is neither .nc nor .csv, or there are fields and it is .csv, or no file can be put there.
     """
     if Path(path).suffix.lower() not in (".nc", ".csv"):
         raise InputError(f"{path}: a study is written as .nc (all of it) or .csv (a row per member); take one of these")
+    if fields and Path(path).suffix.lower() == ".csv":
+        asked, other = " ".join(f"--field {name}" for name in fields), Path(path).with_suffix(".nc")
+        raise InputError(f"{path}: a .csv has a row per member and no room for {asked}; write {other}")
     return check_destination(path)
 
 
