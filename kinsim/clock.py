@@ -16,6 +16,10 @@ class Clock(Protocol):
     """Gives the next step from the time and the fastest particle; None when the run is over."""
 
     @property
+    def end(self) -> float:
+        """The time after the last step."""
+
+    @property
     def stop_at_rest(self) -> bool:
         """Whether a mass that came to rest ends the run."""
 

@@ -126,7 +126,8 @@ class Run:
         """Relative change of mass that no inflow accounts for; what scheme 3 and re-summing make is part of it."""
         mass = self.entries["mass"]
         entered = self.entries["inflow_left"][-1] + self.entries["inflow_right"][-1]
-        return (float(mass[-1] - mass[0] - entered) / float(mass[0])) if mass[0] > 0 else 0.0
+        unit = float(mass[0] or mass.max())  # of a stream onto dry ground: the most there ever was
+        return float(mass[-1] - mass[0] - entered) / unit if unit > 0.0 else 0.0
 
     def to_xarray(self) -> xarray.Dataset:
         """Everything as one labelled dataset; each dump has axes of its own."""

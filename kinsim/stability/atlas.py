@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..clock import Replay
 from ..errors import InputError
 from ..kinetic.velocity import Uniform
 from ..measure.compare import method_name
@@ -19,7 +18,7 @@ from ..method import Kinetic, Macroscopic
 from ..stepper import largest_courant
 from ..studies.engine import Tell
 from ..studies.member import Member, Request
-from ..studies.record import Keep, Record, failed, kept_in
+from ..studies.record import Record, failed
 from ..studies.study import collect
 from .axes import USUAL, Axis, axis
 from .judge import MEASURES, judge
@@ -71,8 +70,8 @@ def atlas(
         if first.field == "nodes" and not _counts_nodes(method):
             continue
         places = _places(Setting(method, steps=steps), first, second)
-        kept = kept_in(keep, resume)
-        for place, (run, nudged) in zip(places, _run(places, first.forced, kept, workers, share), strict=True):
+        options = {"keep": keep, "resume": resume, "workers": workers}
+        for place, (run, nudged) in zip(places, _run(places, first.forced, share, options), strict=True):
             word, measured = judge(place.setting, run, nudged)
             rows.append({"axis": name, "across": across, "value": place.value, "across_value": place.across_value,
                          "class": word, "verdict": run["verdict"], **measured})  # fmt: skip
@@ -100,7 +99,7 @@ def _places(setting: Setting, first: Axis, second: Axis | None) -> list[Place]:
     ]
 
 
-def _run(places: Sequence[Place], forced: bool, kept: Keep, workers: int, tell: Tell) -> list[tuple[Found, Found]]:
+def _run(places: Sequence[Place], forced: bool, tell: Tell, options: dict[str, Any]) -> list[tuple[Found, Found]]:
     """What each setting and its disturbed twin leave behind; those that cannot be built are refused."""
     asked = Request(fields=("h", "q", "dt"), force=forced)
     members: dict[str, Member] = {}
@@ -117,24 +116,19 @@ def _run(places: Sequence[Place], forced: bool, kept: Keep, workers: int, tell: 
             continue
         members[member.key] = member
         keys.append(member.key)
-    found |= collect(members, kept, workers, None, lambda what, part: tell(what, 0.5 * part))
+    first = collect(list(members.values()), tell=lambda what, part: tell(what, 0.5 * part), **options)
+    found |= dict(zip(members, first, strict=True))
     twins = {}
     for place, key in zip(places, keys, strict=True):
         record = found[key]
-        if record.arrays.get("history_dt", np.empty(0)).size and record.figures["verdict_kind"] != "refused":
+        same = record.replay
+        if same and record.figures["verdict_kind"] != "refused":
             member, heap = members[key], place.setting().nudged
-            same = Replay(tuple(record.arrays["history_dt"].tolist()), end=record.figures["t"])
             forced_too = replace(member.request, force=True)
             twins[key] = Member(replace(member.scene, heap=heap), member.method, same, forced_too)
-    again = collect(
-        {twin.key: twin for twin in twins.values()},
-        kept,
-        workers,
-        None,
-        lambda what, part: tell(what, 0.5 + 0.5 * part),
-    )
-    nothing = failed("refused", "")
-    return [(_row(found[key]), _row(again[twins[key].key] if key in twins else nothing)) for key in keys]
+    second = collect(list(twins.values()), tell=lambda what, part: tell(what, 0.5 + 0.5 * part), **options)
+    again = dict(zip(twins, second, strict=True))
+    return [(_row(found[key]), _row(again.get(key, failed("refused", "")))) for key in keys]
 
 
 def _row(record: Record) -> Found:

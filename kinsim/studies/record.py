@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..balance.stages import Array
+from ..clock import Replay
 from ..errors import InputError
 from ..run import Run
 from ..simulate import Progress, simulate
@@ -31,6 +32,12 @@ class Record:
 
     figures: dict[str, Any]
     arrays: dict[str, Array]
+
+    @property
+    def replay(self) -> Replay | None:
+        """The clock of the same steps once more; None if none were taken, or "dt" was not asked for."""
+        dts = self.arrays.get("history_dt", np.empty(0))
+        return Replay(tuple(dts.tolist()), end=self.figures["t"]) if dts.size else None
 
 
 def perform(member: Member, progress: Progress | None = None) -> Record:
@@ -100,7 +107,7 @@ def _total(name: str, column: Array) -> float:
 class Nowhere:
     """Keeps nothing."""
 
-    words = "nothing was kept"
+    words = "none was kept"
 
     def load(self, key: str) -> Record | None:
         return None

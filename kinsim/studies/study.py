@@ -79,9 +79,8 @@ def study(
     request = Request(check_fields(tuple(fields)), save_every, force, traced)
     rows = vary(scene, method, clock, lists, paired, request)
     rounds = [[_again(row, number) for row in rows] for number in range(repeats)]
-    members = {one.key: one for again in rounds for one in again if isinstance(one, Member)}
-    kept = kept_in(keep, resume)
-    found = collect(members, kept, workers, scheduler, tell or _silent)
+    members = [one for again in rounds for one in again if isinstance(one, Member)]
+    found = iter(collect(members, keep=keep, resume=resume, workers=workers, scheduler=scheduler, tell=tell))
     attrs = {
         "title": f"{scene.title or 'untitled'}: a study over {', '.join(lists)}",
         "scene": describe(Scene, scene),
@@ -89,25 +88,35 @@ def study(
         "clock": describe(type(clock), clock),
         "version": code_stamp(),
     }
-    return to_dataset(lists, paired, [[_row(one, found) for one in again] for again in rounds], attrs)
+    records = [[next(found) if isinstance(one, Member) else failed("refused", one.message) for one in again]
+               for again in rounds]  # fmt: skip
+    return to_dataset(lists, paired, records, attrs)
 
 
 def collect(
-    members: Mapping[str, Member], kept: Keep, workers: int, scheduler: str | None, tell: Tell
-) -> dict[str, Record]:
-    """The records of all members, those that were kept first."""
-    found = {key: record for key in members if (record := kept.load(key)) is not None}
-    rest = {key: member for key, member in members.items() if key not in found}
+    members: Sequence[Member],
+    *,
+    keep: str | Path | None = None,
+    resume: bool = False,
+    workers: int = 0,
+    scheduler: str | None = None,
+    tell: Tell | None = None,
+) -> list[Record]:
+    """The record of each member, those that were kept first; options as those of `study`."""
+    kept, wanted = kept_in(keep, resume), {one.key: one for one in members}
+    found = {key: record for key in wanted if (record := kept.load(key)) is not None}
+    rest = {key: member for key, member in wanted.items() if key not in found}
     before = len(found)
 
     def whole(what: str, share: float) -> None:
-        tell(what, (before + share * len(rest)) / len(members))
+        if tell:
+            tell(what, (before + share * len(rest)) / len(wanted))
 
-    with _counted(found, members, kept):
+    with _counted(found, wanted, kept):
         for key, record in engine(workers, scheduler)(rest, whole):
             kept.save(key, record)
             found[key] = record
-    return found
+    return [found[one.key] for one in members]
 
 
 @contextmanager
@@ -121,11 +130,3 @@ def _counted(found: Mapping[str, Record], members: Mapping[str, Member], kept: K
 
 def _again(row: Member | Refused, number: int) -> Member | Refused:
     return replace(row, repeat=number) if isinstance(row, Member) and number else row
-
-
-def _row(one: Member | Refused, found: Mapping[str, Record]) -> Record:
-    return found[one.key] if isinstance(one, Member) else failed("refused", one.message)
-
-
-def _silent(what: str, share: float) -> None:
-    pass

@@ -16,9 +16,9 @@ from ..model.friction import Frictionless
 from ..run import ENDED
 from ..scene import Scene
 from ..studies.study import study
+from .cost import ROUNDS, short_clock
 from .judge import mass_of
-from .pace import finer, steady
-from .pilot import ROUNDS, short_clock
+from .pace import finer, steady, under_way
 
 COARSE = 0.25
 """Cells of the coarse run over those of the scene."""
@@ -54,7 +54,7 @@ class Advice:
     Attributes:
         parts: Each part of the model.
         t: Times, shape (nt,).
-        low, high: Range of the velocities u - c to u + c over time, shape (nt,).
+        low, high: Range of the velocities u - c to u + c over time, shape (nt,); NaN where there is no mass.
         moving: Share of the cells that move, shape (nt,).
         resting: Share of the cells that hold mass at rest, shape (nt,).
         dry: Share of the cells without mass, shape (nt,).
@@ -82,8 +82,8 @@ def advise(scene: Scene, clock: Fixed | Courant, **options: Any) -> Advice:
     Raises:
         InputError: The scene has no mass, or the coarse run does not come to its end.
     """
-    mass_of(scene)
     coarse, method = finer(scene, COARSE), Macroscopic(4)
+    mass = mass_of(coarse, clock.end)
     pace = steady(coarse, method, NUMBER, clock.end)
     every = max(1, pace.steps // ROWS)
     orders = {"method": [method, Macroscopic(4, order=2)]}
@@ -92,14 +92,16 @@ def advise(scene: Scene, clock: Fixed | Courant, **options: Any) -> Advice:
     if str(found["verdict_kind"].item()) not in ENDED:
         raise InputError(f"advise: the coarse run stops: {found['verdict'].item()}; take a scene that comes to its end")
     t, h, u = (found[f"history_{name}"].to_numpy() for name in ("t", "h", "u"))
-    apart = float(np.abs(np.diff(both["h"].to_numpy(), axis=0)).sum()) * coarse.cells.dx / mass_of(coarse)
+    apart = float(np.abs(np.diff(both["h"].to_numpy(), axis=0)).sum()) * coarse.cells.dx / mass
     wet, c = h > 0.0, np.sqrt(2.0 * coarse.beta * h)
     moves = np.abs(u) > STILL * np.abs(u).max() if u.any() else np.zeros(u.shape, bool)
+    filled = wet.any(axis=1)
+    low, high = np.where(wet, u - c, np.inf).min(axis=1), np.where(wet, u + c, -np.inf).max(axis=1)
     seen = Advice(
-        (), t, np.where(wet, u - c, np.inf).min(axis=1), np.where(wet, u + c, -np.inf).max(axis=1),
+        (), t, np.where(filled, low, np.nan), np.where(filled, high, np.nan),
         moves.mean(axis=1), (wet & ~moves).mean(axis=1), (~wet).mean(axis=1), COARSE * apart,
     )  # fmt: skip
-    return Advice(_parts(scene, seen, _costs(scene, options)), *list(vars(seen).values())[1:])
+    return Advice(_parts(scene, seen, _costs(under_way(scene), options)), *list(vars(seen).values())[1:])
 
 
 def _costs(scene: Scene, options: dict[str, Any]) -> dict[str, float]:
@@ -123,27 +125,28 @@ def _parts(scene: Scene, seen: Advice, cost: dict[str, float]) -> tuple[Part, ..
     def times(way: str, of: str) -> str:
         return f"{cost[way] / cost[of]:.2g} times a step of {of}"
 
+    printed, alone = np.isfinite(cost["scheme 1"]), "in scheme 4, which alone can run the scene"
     pull, hold = float(np.max(np.abs(scene.pull))), float(np.max(scene.resistance))
-    if hold == 0.0:
-        rests = "there is none"
-    else:
-        rests = (
-            f"R = {hold:.3g} and a pull of {pull:.3g}: it {'holds' if hold >= pull else 'slows but cannot hold'} mass"
-        )
+    holding = float(np.mean(scene.resistance >= np.abs(scene.pull))) if hold > 0.0 else 0.0
+    does = {0.0: "slows but cannot hold mass", 1.0: "holds mass"}.get(
+        holding, f"holds mass on {_percent(holding)} of x"
+    )
+    rests = f"R = {hold:.3g} and a pull of up to {pull:.3g}: it {does}" if hold > 0.0 else "there is none"
     friction = f"{cost['scheme 4'] / cost['frictionless']:.2g} times a step without" if hold > 0.0 else "nothing"
     resting, moving = seen.resting[1:], seen.moving[1:]
     reach = np.maximum(np.abs(seen.low), np.abs(seen.high))
+    reach = reach[np.isfinite(reach)]
     mixed = (moving > 0) & (resting > 0) & (hold > 0.0)
     settles = float(seen.moving[-1]) == 0.0
     return (
         Part("pull of the chute", pull > 0.0, f"|sin zeta| = {pull:.3g}", "nothing of note"),
         Part("friction", hold > 0.0, rests, friction),
-        Part("static friction (scheme 4)", 0.0 < hold >= pull and bool(resting.any()),
+        Part("static friction (scheme 4)", holding > 0.0 and bool(resting.any()),
              f"up to {_percent(resting.max())} of the cells hold mass at rest after the start",
-             times("scheme 4", "scheme 1")),
+             times("scheme 4", "scheme 1") if printed else alone),
         Part("coupling of slow and fast", bool(mixed.any()),
              f"with friction, both meet in {_percent(mixed.mean())} of the states",
-             f"in scheme 4; scheme 3: {times('scheme 3', 'scheme 1')}"),
+             f"in scheme 4; scheme 3: {times('scheme 3', 'scheme 1')}" if printed else alone),
         Part("dry ground (scheme 4)", bool(seen.dry.any()),
              f"{_percent(seen.dry[0])} of the cells are empty at the start, {_percent(seen.dry[-1])} at the end",
              "in scheme 4"),

@@ -16,9 +16,10 @@ from ..run import ENDED
 from ..scene import Scene
 from ..studies.study import study
 from .choose import candidates
+from .cost import seconds_per_step
 from .judge import judge, mass_of
 from .pace import steady, twin_of
-from .pilot import Pilots, kind_of, nodes, seconds_per_step
+from .pilot import Pilots, kind_of, nodes
 
 ENOUGH = 0.1
 """A velocity error of this share of the error of dx pays no more."""
@@ -81,7 +82,7 @@ def budget(scene: Scene, method: Kinetic | Macroscopic, clock: Fixed | Courant, 
     Raises:
         InputError: The scene has no mass, or one of the runs does not come to its end.
     """
-    mass, end, twin = mass_of(scene), clock.end, twin_of(method)
+    mass, end, twin = mass_of(scene, clock.end), clock.end, twin_of(method)
     first = clock if isinstance(clock, Fixed) else steady(scene, method, clock.number, end)
     halves = [replace(first, dt=first.dt / part, steps=first.steps * part) for part in (1, 2, 4)]
     runs: list[tuple[Any, Fixed]] = [(method, first), *((twin, one) for one in halves)]

@@ -10,7 +10,9 @@ import numpy as np
 from ..balance.stages import Array
 from ..errors import InputError
 from ..exact.of_scene import exact_of
+from ..macroscopic.half_moments import half_moments_closed
 from ..method import Macroscopic
+from ..model.boundary import Inflow, ends
 from ..model.cells import Cells
 from ..scene import Scene
 from ..studies.study import study
@@ -66,7 +68,7 @@ def judge(scene: Scene, end: float, finest: float, **options: Any) -> Judge:
     half, whole = (found["h"].values[k, : one.cells.count] for k, one in enumerate(scenes))
     made = _judge(f"second order on {scenes[1].cells.count} cells", scenes[1].cells, whole, 0.0)
     apart = float(np.abs(made.averages(scenes[0].cells) - half).sum() * scenes[0].cells.dx)
-    return _judge(made.what, scenes[1].cells, whole, apart / mass_of(scene))
+    return _judge(made.what, scenes[1].cells, whole, apart / mass_of(scene, end))
 
 
 def _judge(what: str, cells: Cells, h: Array, error: float) -> Judge:
@@ -74,15 +76,22 @@ def _judge(what: str, cells: Cells, h: Array, error: float) -> Judge:
     return Judge(what, edges, np.concatenate([[0.0], np.cumsum(h) * cells.dx]), error)
 
 
-def mass_of(scene: Scene) -> float:
-    """Mass at the start, the unit of errors.
+def mass_of(scene: Scene, end: float) -> float:
+    """The unit of errors: the mass at the start, and what streams at the ends send in until `end`.
 
     Raises:
         InputError: There is none.
     """
-    mass = float(scene.initial()[0].sum() * scene.cells.dx)
+    mass = float(scene.initial()[0].sum() * scene.cells.dx) + end * _coming(scene)
     if not mass > 0.0:
-        raise InputError(
-            "errors are measured in the mass at the start, and there is none; take a heap that is not empty"
-        )
+        raise InputError("errors are measured in the mass, and none is there and none comes; take a heap, or a stream")
     return mass
+
+
+def _coming(scene: Scene) -> float:
+    """Mass per time that streams send through the two ends: their half-range moments of xi M."""
+    found, beta = 0.0, np.broadcast_to(scene.beta, scene.x.shape)
+    for at, (end, side) in enumerate(zip(ends(scene.boundary), (0, 2), strict=True)):
+        if isinstance(end, Inflow):
+            found += abs(half_moments_closed(end.h, end.u, float(beta[-at]))[side])
+    return found

@@ -45,15 +45,11 @@ def varied(scenes: Sequence[Scene]) -> dict[str, list[Any]]:
     return over
 
 
-def at_pace(scene: Scene, method: Kinetic | Macroscopic, clock: Fixed | Courant, level: float) -> Fixed:
-    """Steps of one length for the scene on `level` times its cells, as long beside dx as those of the clock.
-
-    Raises:
-        InputError: The closed form does not come to the end.
-    """
+def at_pace(clock: Fixed | Courant, level: float) -> Fixed | Courant:
+    """The clock of a scene on `level` times its cells, with steps as long beside dx."""
     if isinstance(clock, Courant):
-        return steady(finer(scene, level), method, clock.number, clock.end)
-    steps = max(1, round(clock.steps * finer(scene, level).cells.count / scene.cells.count))
+        return clock
+    steps = max(1, round(clock.steps * level))
     return Fixed(clock.end / steps, steps)
 
 
@@ -83,3 +79,18 @@ def steady(scene: Scene, method: Kinetic | Macroscopic, number: float, end: floa
     shortest = float(run.dt[:-1].min()) if run.dt.size > 1 else end
     steps = math.ceil(end / shortest * allowed / number)
     return Fixed(end / steps, steps)
+
+
+def under_way(scene: Scene) -> Scene:
+    """The scene itself, if it has mass; else as the closed form leaves it when its streams have crossed all cells.
+
+    A step costs little where all is dry.
+    """
+    if scene.initial()[0].any():
+        return scene
+    method = Macroscopic(4)
+    across = (scene.cells.right - scene.cells.left) / scene.fastest
+    run = simulate(scene, method, Courant(0.8 * largest_courant(method), across), ONCE)
+    if run.verdict.kind == "interrupted":
+        raise KeyboardInterrupt
+    return replace(scene, heap=Profile(run.h[-1], run.u[-1]))

@@ -1,54 +1,74 @@
 """Pilot runs: a scene on fewer cells tells how large velocity errors will be on all of them, and how many cells sleep.
 
-Pilots run on two thirds and a third of the cells, but not on fewer than `LEAST`: a scene that has no more than twice as
-many is its own pilot. Their steps are as long beside dx as those of the run, so that Courant numbers are the same. The
-velocity error of a method hardly depends on dx: it says where, not how often, a flux is off. What it is in the finer
-pilot is taken for the scene itself, times a margin that is measured, too: how much the velocity errors of this scene
-change from the coarser pilots to the finer ones, as far as it is from the finer ones to the scene.
+Pilots run on two thirds and a third of the cells; a scene of fewer than `OWN` cells is its own pilot, whose errors are
+measured, not foreseen, and so is one whose pilots tell less than is `PROMISED`. Steps are as long beside dx as those of
+the run, and those of a `Courant` clock are its own: each pilot is held against its twin in the same steps. The velocity
+error of a method hardly depends on dx: it says where, not how often, a flux is off. What it is in the finer pilot is
+taken for the scene itself, times a margin that is measured, too: how much the velocity errors of this scene change from
+the coarser pilots to the finer ones, as far as it is from the finer ones to the scene.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
 from scipy.special import stdtrit
 
 from ..balance.stages import Array
-from ..clock import Courant, Fixed
+from ..clock import AnyClock, Courant, Fixed
 from ..kinetic.velocity import Fitted, Uniform
-from ..method import Kinetic
+from ..method import Kinetic, Macroscopic
 from ..run import ENDED
 from ..scene import Scene
-from ..stepper import largest_courant
-from ..studies.study import study
-from .family import NUMBER
+from ..studies.member import Member, Request
+from ..studies.record import Record
+from ..studies.study import collect
 from .judge import mass_of
-from .pace import at_pace, finer, varied
+from .pace import at_pace, finer
 
-LEAST = 80
-"""On fewer cells a scene is another one."""
+OWN = 240
+"""With fewer cells a scene is its own pilot: on a third of them it would be another scene."""
 
 FINE = 2.0 / 3.0
 """Cells of the finer pilots over those of the scene, if these are many."""
 
-CONFIDENCE = 0.95
+PROMISED = 10.0
+"""A prediction is to be no farther off than this: with a larger margin the scene is its own pilot, too."""
+
+CONFIDENCE = 0.975
 """So often the next change of a velocity error, normally distributed about none, is to stay within the margin."""
 
-UNEVEN = 0.25
-"""Steps of one length, in place of those of a `Courant` clock, are taken for so much of a level."""
-
-TIMED_STEPS = 16
-ROUNDS = 5
-QUARTER = 0.25
+DTS = Request(fields=("dt",))
 
 
-def levels(count: int) -> tuple[float, float]:
-    """Cells of the coarser and of the finer pilots, over the `count` cells of the scene."""
-    fine = min(max(FINE, 2.0 * LEAST / count), 1.0)
-    return 0.5 * fine, fine
+def levels(count: int) -> tuple[float, ...]:
+    """Cells of the coarser and of the finer pilots, over the `count` cells of the scene; 1 where it is its own."""
+    return (0.5 * FINE, FINE) if count >= OWN else (1.0,)
+
+
+@dataclass(frozen=True)
+class _Level:
+    """The scene on some of its cells, and when."""
+
+    scene: Scene
+    clock: Fixed | Courant
+    mass: float
+
+    @classmethod
+    def of(cls, scene: Scene, clock: Fixed | Courant, share: float) -> Self:
+        """Steps are as long beside dx as those of `clock`."""
+        coarse = finer(scene, share)
+        return cls(coarse, at_pace(clock, coarse.cells.count / scene.cells.count), mass_of(coarse, clock.end))
+
+    def apart(self, run: Record, twin: Record) -> float:
+        """L1(h) between the ends of two runs, over the mass; NaN if one was stopped."""
+        if any(one.figures["verdict_kind"] not in ENDED for one in (run, twin)):
+            return math.nan
+        return float(np.abs(run.arrays["h"] - twin.arrays["h"]).sum() * self.scene.cells.dx / self.mass)
 
 
 class Pilots:
@@ -58,72 +78,79 @@ class Pilots:
         scene: Whose velocity errors.
         method: Whose twin.
         clock: When its runs end, and how long their steps are.
-        options: Those of a study.
+        options: `keep`, `resume`, `tell`, ... of a study.
     """
 
     def __init__(self, scene: Scene, method: Kinetic, clock: Fixed | Courant, **options: Any) -> None:
         self._options = options
-        coarse, fine = levels(scene.cells.count)
-        self._ahead = max(math.log2(1.0 / fine), UNEVEN if isinstance(clock, Courant) else 0.0)
-        self._scenes = [finer(scene, level) for level in (coarse, fine)]
-        self._clocks = [at_pace(scene, method, clock, level) for level in (coarse, fine)]
+        shares = levels(scene.cells.count)
+        self._ahead = math.log2(1.0 / shares[-1])
+        self._whole, self._levels = _Level.of(scene, clock, 1.0), [_Level.of(scene, clock, one) for one in shares]
+        self._known: dict[str, Record] = {}
         self._sleeps = isinstance(clock, Fixed)
-        self.floor = float(np.finfo(float).eps) * max(one.steps for one in self._clocks) / fine
         self._found: dict[Kinetic, Array] = {}
         self._awake: dict[Kinetic, float] = {}
-        self._scene, self._twin = scene, method.twin
-        closed, awake = self._run([method.twin])
-        self._closed, self._of_twin = closed[:, 0], float(awake[-1, 0])
+        self._twin = method.twin
+        closed = self._run([(level, method.twin, level.clock) for level in self._levels])
+        self._of_twin = _awake(closed[-1])
+        steps = max(record.figures.get("steps", 0) for record in closed)
+        self.floor = float(np.finfo(float).eps) * steps / shares[-1]
 
     def ask(self, methods: Sequence[Kinetic]) -> None:
         """Run the pilots of `methods` that were not run before."""
         new = [method for method in dict.fromkeys(methods) if method not in self._found]
-        if not new:
-            return
-        heights, awake = self._run(new)
+        errors, awake = self._errors(self._levels, new)
         for at, method in enumerate(new):
-            apart = [
-                np.abs(h - closed).sum() * one.cells.dx / mass_of(one)
-                for h, closed, one in zip(heights[:, at], self._closed, self._scenes, strict=True)
-            ]
-            self._found[method] = np.maximum(np.array(apart), self.floor)
-            self._awake[method] = float(awake[-1, at])
+            self._found[method], self._awake[method] = errors[:, at], awake[at]
 
-    def _run(self, methods: Sequence[Any]) -> tuple[np.ndarray, Array]:
-        """Heights at the end, an array of arrays over (level, method), and shares of cells awake; NaN if stopped."""
-        pairs = [(level, method) for level in range(len(self._scenes)) for method in methods]
-        over = {
-            "method": [method for _, method in pairs],
-            **varied([self._scenes[level] for level, _ in pairs]),
-            "clock": [self._clocks[level] for level, _ in pairs],
-        }
-        found = study(self._scene, self._twin, self._clocks[0], over, paired=True, **self._options)
-        heights = np.empty((len(self._scenes), len(methods)), dtype=object)
-        good = np.isin(found["verdict_kind"].to_numpy(), ENDED)
-        awake = np.where(good, found["awake"].to_numpy() if good.any() else np.nan, np.nan)
-        for at, (level, _) in enumerate(pairs):
-            count = self._scenes[level].cells.count
-            h = found["h"].to_numpy()[at, :count] if good.any() and "h" in found else np.full(count, np.nan)
-            heights[level, at % len(methods)] = h if good[at] else np.full(count, np.nan)
-        return heights, awake.reshape(heights.shape)
+    def _errors(self, of: Sequence[_Level], methods: Sequence[Kinetic]) -> tuple[Array, list[float]]:
+        """Velocity errors over (level, method), each to the twin in the same steps, and shares awake on the last."""
+        asked = [(level, method, level.clock) for level in of for method in methods]
+        runs = self._run(asked)
+        twins = self._run([
+            (level, self._twin, clock if isinstance(clock, Fixed) else run.replay or clock)
+            for (level, _, clock), run in zip(asked, runs, strict=True)
+        ])  # fmt: skip
+        apart = [level.apart(run, twin) for (level, _, _), run, twin in zip(asked, runs, twins, strict=True)]
+        found = np.maximum(np.reshape(apart, (len(of), len(methods))), self.floor)
+        return found, [_awake(run) for run in runs[len(runs) - len(methods) :]]
+
+    def _run(self, asked: Sequence[tuple[_Level, Kinetic | Macroscopic, AnyClock]]) -> list[Record]:
+        """The record of each."""
+        members = [Member(level.scene, method, clock, DTS) for level, method, clock in asked]
+        new = [one for one in members if one.key not in self._known]
+        self._known |= dict(zip((one.key for one in new), collect(new, **self._options), strict=True))
+        return [self._known[one.key] for one in members]
 
     @property
     def margin(self) -> float:
-        """The factor that covers 95 percent of what velocity errors do from the finer pilots to the scene."""
+        """The factor that covers 97.5 percent of what velocity errors do from the finer pilots to the scene."""
         errors = np.array(
             [found for found in self._found.values() if np.isfinite(found).all() and found.min() > self.floor]
         )
         if not errors.size:
             return 1.0
-        change = np.log(errors[:, 1] / errors[:, 0])
+        change = np.log(errors[:, -1] / errors[:, 0])
         deviations = stdtrit(change.size, CONFIDENCE)  # Student's: few pilots tell a deviation with some doubt
         return float(np.exp(self._ahead * deviations * np.sqrt(np.mean(change**2))))
 
+    @property
+    def foretell(self) -> bool:
+        """Whether errors are foreseen, with the margin; else they are measured on all cells."""
+        return self._ahead > 0.0 and self.margin <= PROMISED
+
     def predicted(self, method: Kinetic) -> float:
-        """The velocity error of a run on all cells, at most, with a confidence of 95 percent; inf if a pilot failed."""
+        """The velocity error of a run on all cells, at most, with a confidence of 97.5 percent; inf if a pilot failed.
+
+        Where the pilots tell less than is promised it is measured on all cells.
+        """
         self.ask([method])
-        measured = float(self._found[method][-1])
-        return math.inf if math.isnan(measured) else measured if measured <= self.floor else measured * self.margin
+        found = float(self._found[method][-1])
+        if not self.foretell and math.isfinite(found):
+            found = self._errors([self._whole], [method])[0].item()
+        elif found > self.floor:
+            found *= self.margin
+        return math.inf if math.isnan(found) else found
 
     def awake(self, method: Kinetic) -> float:
         """The share of its cells that a run will step, as its finer pilot did; all with a `Courant` clock."""
@@ -156,6 +183,10 @@ class Pilots:
         return float(np.exp(start + slope * scale(nodes(method))) / max(self.margin, 2.0))
 
 
+def _awake(record: Record) -> float:
+    return float(record.figures["awake"]) if record.figures["verdict_kind"] in ENDED else math.nan
+
+
 def nodes(method: Kinetic) -> int:
     """Velocity nodes of a method on a grid or with fitted ones."""
     assert isinstance(method.velocity, (Uniform, Fitted))
@@ -165,64 +196,3 @@ def nodes(method: Kinetic) -> int:
 def kind_of(method: Kinetic) -> tuple[Any, ...]:
     """What methods share that differ in the number of nodes alone."""
     return type(method.velocity), method.equilibrium, method.force, method.projection
-
-
-class Cost(NamedTuple):
-    """Seconds that a step takes, without its cells and for all of them."""
-
-    step: float
-    cells: float
-
-    def of(self, awake: float) -> float:
-        """Seconds of a step in which this share of the cells is awake."""
-        return self.step + awake * self.cells
-
-
-def seconds_per_step(scene: Scene, methods: Sequence[Kinetic], **options: Any) -> list[Cost]:
-    """What a step of each method costs.
-
-    Of each kind the one with the fewest nodes, the one with the most and one in between are timed on all cells and on a
-    quarter of them, in short runs that take turns; the others lie on the straight line in n through the least times.
-    """
-    kinds: dict[Any, list[Kinetic]] = {}
-    for method in methods:
-        kinds.setdefault(kind_of(method), []).append(method)
-    telling = [method for of in kinds.values() for method in _telling(of)]
-    few = finer(scene, QUARTER)
-    number = NUMBER * largest_courant(methods[0])
-    over = {
-        "method": [*telling, *telling],
-        **varied([scene] * len(telling) + [few] * len(telling)),
-        "clock": [short_clock(scene, number)] * len(telling) + [short_clock(few, number)] * len(telling),
-    }
-    found = study(scene, methods[0], over["clock"][0], over, paired=True, repeats=ROUNDS, **options)
-    whole, part = (found["wall_time"] / found["steps"]).min("repeat").to_numpy().reshape(2, -1)
-    saved = 1.0 - few.cells.count / scene.cells.count
-    cells = np.clip((whole - part) / saved, 0.0, whole) if saved > 0.0 else np.zeros_like(whole)
-    timed = dict(zip(telling, np.stack([whole - cells, cells], axis=1), strict=True))
-    out: dict[Kinetic, Cost] = {}
-    for of in kinds.values():
-        n, known = np.array([nodes(one) for one in _telling(of)]), np.array([timed[one] for one in _telling(of)])
-        for one in of:
-            out[one] = Cost(*(_line(n, column, nodes(one)) for column in known.T))
-    return [out[one] for one in methods]
-
-
-def _line(n: Array, seconds: Array, at: int) -> float:
-    """The straight line through what was measured, which does not fall, at `at` nodes."""
-    good = np.isfinite(seconds)
-    if good.sum() < 2:
-        return float(seconds[good].sum()) or math.nan
-    slope, start = np.polyfit(n[good], seconds[good], 1)
-    return max(float(start + max(slope, 0.0) * at), 0.0)
-
-
-def _telling(of: Sequence[Kinetic]) -> list[Kinetic]:
-    ordered = sorted(of, key=nodes)
-    return list(dict.fromkeys([ordered[0], ordered[len(of) // 2], ordered[-1]]))
-
-
-def short_clock(scene: Scene, number: float) -> Courant:
-    """About `TIMED_STEPS` steps, in which no cell sleeps."""
-    mass_of(scene)
-    return Courant(number, TIMED_STEPS * number * scene.cells.dx / scene.fastest)

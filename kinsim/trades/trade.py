@@ -78,7 +78,7 @@ def trade(
     if family is not None and not family:
         raise InputError("trade: the family is empty; give at least one choice")
     picked = list(family) if family is not None else chosen(method, lines)
-    end, mass = clock.end, mass_of(scene)
+    end, mass = clock.end, mass_of(scene, clock.end)
     options: dict[str, Any] = {"keep": keep, "resume": resume}
     paces: dict[Any, Fixed] = {}
 
