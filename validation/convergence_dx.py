@@ -23,9 +23,7 @@ from laboratory.judged import CASES, CLOCKS, SLIDES, UNLIKE, Case, cases_of
 from laboratory.orders import Panel, falls, halvings, order, picture
 
 from kinsim import Courant, Fixed, Macroscopic
-from kinsim.clock import Clock
 
-EPS = float(np.finfo(float).eps)
 FIXED = "dt = 0.001"
 TIMES = {name: number for name, number in CLOCKS.items() if number is not None} | {FIXED: None}
 
@@ -49,8 +47,8 @@ def main(chapter: Chapter) -> None:
 
 def apart(case: Case, clock: str) -> float:
     """Largest difference of schemes 1 and 3 in h and q at the end."""
-    one, other = (case.run(Macroscopic(scheme), timing(case, clock), 140) for scheme in (1, 3))
-    return float(max(np.abs(one.h - other.h).max(), np.abs(one.q - other.q).max()))
+    one, other = (run.arrays for run in case.runs([Macroscopic(1), Macroscopic(3)], timing(case, clock), (140, 140)))
+    return float(max(np.abs(one[name] - other[name]).max() for name in ("h", "history_q")))
 
 
 def orders(chapter: Chapter, scheme: int, clock: str, counts: list[int]) -> Panel:
@@ -59,7 +57,7 @@ def orders(chapter: Chapter, scheme: int, clock: str, counts: list[int]) -> Pane
     for name, case in cases_of(scheme).items():
         if scheme > 1 and name == "pile":
             continue
-        errors = [case.error(case.run(Macroscopic(scheme), timing(case, clock), count)) for count in counts]
+        errors = case.errors(Macroscopic(scheme), timing(case, clock), counts)
         rows.append([name, *errors, *falls(widths, errors)])
         found[name] = errors
         bounds = expected(scheme, name, clock)
@@ -72,7 +70,7 @@ def orders(chapter: Chapter, scheme: int, clock: str, counts: list[int]) -> Pane
     return Panel(f"scheme {scheme}, {clock}", widths, found)
 
 
-def timing(case: Case, clock: str) -> Clock:
+def timing(case: Case, clock: str) -> Courant | Fixed:
     """A Courant number, or the paper's dt on all cells."""
     number = TIMES[clock]
     return Courant(number, case.end) if number is not None else Fixed(1e-3, round(case.end / 1e-3))
@@ -108,20 +106,13 @@ def rounding(chapter: Chapter, counts: list[int]) -> None:
             for clock, number in TIMES.items():
                 if name == "pile" and not case.settled(scheme, number):
                     continue
-                worst = max(miss(case, scheme, timing(case, clock), count) for count in counts)
+                worst = max(map(case.miss, case.runs(Macroscopic(scheme), timing(case, clock), counts)))
                 rows.append([name, scheme, clock, worst])
     heads = ("exact solution", "scheme", "time step", "error")
     chapter.table("Largest error of h and q at the end, all dx, over eps and number of steps", heads, rows)
     for name in dict.fromkeys(row[0] for row in rows):
         worst = max(row[-1] for row in rows if row[0] == name)
         chapter.claim(f"{name}: largest error of h and q at the end, over eps and steps", worst, high=8.0)
-
-
-def miss(case: Case, scheme: int, clock: Clock, count: int) -> float:
-    """Largest error of h and q at the end, over eps and the number of steps."""
-    one = case.run(Macroscopic(scheme), clock, count)
-    h, q = case.exact.averages(one.scene.cells, float(one.t[-1]))
-    return float(max(np.abs(one.h[-1] - h).max(), np.abs(one.q[-1] - q).max()) / (EPS * one.steps))
 
 
 if __name__ == "__main__":

@@ -31,14 +31,14 @@ from dataclasses import replace
 from itertools import product
 
 from claims import Chapter, run
+from laboratory.family import distance, family
 from laboratory.judged import BETA, CASES, CLOCKS, UNLIKE, Case, cases_of
-from laboratory.measures import distance
 from laboratory.orders import Panel, order, picture
 
-from kinsim import Kinetic, Macroscopic, Run, Uniform, load_scene, simulate
-from kinsim.clock import Replay
+from kinsim import Kinetic, Macroscopic, Uniform, load_scene
 from kinsim.exact import SlidingWedge
 from kinsim.kinetic.equilibrium import EquilibriumName
+from kinsim.studies.record import Record
 
 RANGE = (1.5, 4.0)
 """Of the order of L1(h) between the wings: 2 to 7/2, and a half for the scatter of a few numbers of nodes."""
@@ -80,7 +80,7 @@ def to_the_twin(chapter: Chapter, scheme: int, clock: str, cells: int, nodes: tu
         if not case.settled(scheme, CLOCKS[clock]) or name == "pile" or (scheme == 3 and name not in UNLIKE):
             continue
         twin, grids = wings(case, scheme, clock, cells, nodes)
-        found[name] = [distance(one, twin) for one in grids]
+        found[name] = [distance(one, twin, case.scene(cells)) for one in grids]
         slope = order(widths, found[name])
         rows.append([name, *found[name], f"{slope:.2f}", case.error(grids[0]), case.error(grids[-1]), case.error(twin)])
         if not case.rests:
@@ -101,11 +101,11 @@ def wings(
     cells: int,
     nodes: tuple[int, ...],
     equilibrium: EquilibriumName = "cell-average",
-) -> tuple[Run, list[Run]]:
+) -> tuple[Record, list[Record]]:
     """The twin, and the kinetic wing with `nodes`, all with the twin's steps."""
-    twin = case.run(Macroscopic(scheme), case.clock(CLOCKS[clock], cells), cells)
-    steps = Replay(tuple(twin.dt), case.end)
-    return twin, [case.run(Kinetic(scheme, Uniform(n), equilibrium), steps, cells) for n in nodes]
+    (twin,) = case.runs(Macroscopic(scheme), case.clock(CLOCKS[clock], cells), [cells])
+    methods = [Kinetic(scheme, Uniform(n), equilibrium) for n in nodes]
+    return twin, case.runs(methods, twin.replay, [cells] * len(nodes))
 
 
 def where_dxi_is_all(chapter: Chapter, name: str, clock: str, nodes: tuple[int, ...]) -> Panel:
@@ -144,9 +144,9 @@ def whole_runs(chapter: Chapter) -> None:
         for name in ("riemann", "silo", "silo-incline", "parabola", "sine"):
             scene, _, clock = load_scene(name)
             clock = clock if chapter.full else replace(clock, steps=200)
-            twin = simulate(scene, Macroscopic(scheme), clock, 10**6)
-            apart = [distance(simulate(scene, Kinetic(scheme, Uniform(n), equilibrium), clock, 10**6), twin)
-                     for n in nodes]  # fmt: skip
+            grids = [Kinetic(scheme, Uniform(n), equilibrium) for n in nodes]
+            twin, *each = family(scene, [Macroscopic(scheme), *grids], clock)
+            apart = [distance(one, twin, scene) for one in each]
             mean = order([1, 0.5, 0.25], apart)
             rows.append([name, scheme, equilibrium, *apart, f"{mean:.2f}"])
             floor = (scheme == 1 and name in ("silo", "silo-incline", "parabola")) or (scheme == 3 and name == "sine")

@@ -16,12 +16,12 @@ from __future__ import annotations
 
 import numpy as np
 from claims import Chapter, run
-from laboratory.judged import CASES, CLOCKS, SLIDES, UNLIKE, cases_of
+from laboratory.judged import CASES, CLOCKS, EPS, SLIDES, UNLIKE, Case, cases_of
 from laboratory.orders import Panel, falls, halvings, order, picture
 
 from kinsim import Kinetic, Uniform
+from kinsim.studies.record import Record
 
-EPS = float(np.finfo(float).eps)
 CELLS, NODES = 56, 24
 
 
@@ -40,11 +40,7 @@ def orders(chapter: Chapter, scheme: int, clock: str, levels: list[int]) -> Pane
     for name, case in cases_of(scheme).items():
         if scheme == 3 and name not in UNLIKE:
             continue
-        errors = []
-        for level in levels:
-            timing = case.clock(CLOCKS[clock], CELLS * level)
-            errors.append(case.error(case.run(Kinetic(scheme, Uniform(NODES * level)), timing, CELLS * level)))
-        found[name] = errors
+        errors = found[name] = [case.error(run) for run in refined(case, scheme, CLOCKS[clock], levels)]
         rows.append([name, *errors, *falls(widths, errors)])
         bounds = expected(scheme, name, clock)
         if bounds is not None:
@@ -53,6 +49,13 @@ def orders(chapter: Chapter, scheme: int, clock: str, levels: list[int]) -> Pane
     heads = ["exact solution", *(f"dx = {width:.4g}" for width in widths), *["order"] * (len(levels) - 1)]
     chapter.table(f"L1(h), kinetic, scheme {scheme}, {clock}", heads, rows)
     return Panel(f"scheme {scheme}, {clock}", widths, found)
+
+
+def refined(case: Case, scheme: int, number: float | None, levels: list[int]) -> list[Record]:
+    """Runs with all three widths halved from level to level."""
+    counts = [CELLS * level for level in levels]
+    methods = [Kinetic(scheme, Uniform(NODES * level)) for level in levels]
+    return case.runs(methods, [case.clock(number, count) for count in counts], counts)
 
 
 def expected(scheme: int, name: str, clock: str) -> tuple[float, float] | None:
@@ -72,16 +75,16 @@ def slides(chapter: Chapter, levels: list[int]) -> None:
     """Largest error of h and u at the end, over eps and steps."""
     for name, case in SLIDES.items():
         for scheme in (3,) if case.rests else (1, 3):
-            worst = 0.0
-            for level in levels:
-                count = CELLS * level
-                for number in CLOCKS.values():
-                    one = case.run(Kinetic(scheme, Uniform(NODES * level)), case.clock(number, count), count)
-                    h, u = case.exact(one.x, float(one.t[-1]))
-                    off = max(np.abs(one.h[-1] - h).max(), np.abs(one.u[-1] - u).max())
-                    worst = max(worst, float(off) / (EPS * one.steps))
+            runs = [one for number in CLOCKS.values() for one in refined(case, scheme, number, levels)]
+            worst = max(off(case, one) / (EPS * one.figures["steps"]) for one in runs)
             chapter.claim(f"{name}, scheme {scheme}: largest error of h and u, all grids, over eps and steps", worst,
                           high=8.0)  # fmt: skip
+
+
+def off(case: Case, run: Record) -> float:
+    """Largest error of h and u at the end."""
+    h, u = case.exact(run.arrays["x"], run.figures["t"])
+    return float(max(np.abs(run.arrays["h"] - h).max(), np.abs(run.arrays["u"] - u).max()))
 
 
 if __name__ == "__main__":

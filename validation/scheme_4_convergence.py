@@ -13,21 +13,20 @@ opens between two masses are taken like everything else.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from claims import Chapter, run
+from laboratory.family import family
 from laboratory.judged import BETA, CASES, DOWN, EVERYWHERE, HELD, ROUGH, SMOOTH, Case
 from laboratory.orders import Panel, falls, halvings, order, picture
 from laboratory.repaired import Array
 
-from kinsim import Cells, Courant, Frictionless, Macroscopic, Profile, Run, Scene, simulate
-from kinsim.balance.scheme4 import Limiter
+from kinsim import Cells, Courant, Frictionless, Macroscopic, Profile, Scene
 from kinsim.exact import ParabolicCap, Riemann, UniformSlide
 from kinsim.stepper import largest_courant
-
-EPS = float(np.finfo(float).eps)
 
 DRY = {
     "Ritter": Case(Riemann(1, 0, 0, 0, BETA), 2.0, wet=False),
@@ -91,16 +90,20 @@ class SimpleWave:
         averages: Array = 0.5 * self.start(y)[0] @ weights
         return averages
 
-    def run(self, method: Macroscopic, number: float, count: int, end: float) -> float:
-        """L1(h) at time `end` on `count` cells."""
-        cells = Cells(0.0, 1.0, count)
+    def errors(self, method: Macroscopic, number: float, counts: Sequence[int], end: float) -> list[float]:
+        """L1(h) at time `end` on each number of cells."""
         nodes, weights = np.polynomial.legendre.leggauss(5)
-        h, u = self.start(cells.x[:, None] + 0.5 * cells.dx * nodes)
-        mean = 0.5 * h @ weights
-        scene = Scene(cells, Profile(mean, 0.5 * (h * u) @ weights / mean), friction=Frictionless(),
-                      boundary="periodic", epsilon=BETA)  # fmt: skip
-        one = simulate(scene, method, Courant(number, end), 10**6)
-        return float(np.abs(one.h[-1] - self.averages(cells, end)).sum() * cells.dx)
+        scenes = []
+        for count in counts:
+            cells = Cells(0.0, 1.0, count)
+            h, u = self.start(cells.x[:, None] + 0.5 * cells.dx * nodes)
+            mean = 0.5 * h @ weights
+            scenes.append(Scene(cells, Profile(mean, 0.5 * (h * u) @ weights / mean), friction=Frictionless(),
+                                boundary="periodic", epsilon=BETA))  # fmt: skip
+        return [
+            float(np.abs(run.arrays["h"] - self.averages(scene.cells, end)).sum() * scene.cells.dx)
+            for scene, run in zip(scenes, family(scenes, method, Courant(number, end)), strict=True)
+        ]
 
 
 def main(chapter: Chapter) -> None:
@@ -128,7 +131,7 @@ def converge(chapter: Chapter, name: str, counts: list[int]) -> Panel:
     method, number = METHODS[name]
     widths, found, rows = [14 / count for count in counts], {}, []
     for what, case in JUDGES.items():
-        errors = [case.error(case.run(method, Courant(number, case.end), count)) for count in counts]
+        errors = case.errors(method, Courant(number, case.end), counts)
         found[what] = errors
         low, high = expected(what, method.order)
         if what in STRAIGHT and method.order == 2:
@@ -160,7 +163,7 @@ def smooth(chapter: Chapter, counts: list[int]) -> dict[str, list[float]]:
         "second order, minmod, Courant 0.49": (Macroscopic(4, order=2, limiter="minmod"), 0.49),
     }
     for name, (method, number) in methods.items():
-        errors = [wave.run(method, number, count, end) for count in counts]
+        errors = wave.errors(method, number, counts, end)
         rows.append([name, *errors, *falls(widths, errors)])
         found[name] = errors
         reached = order(widths[-2:], errors[-2:])
@@ -174,20 +177,20 @@ def smooth(chapter: Chapter, counts: list[int]) -> dict[str, list[float]]:
 def crossing(chapter: Chapter, counts: list[int]) -> None:
     """Waves that run both ways through each other: cells of which the fastest become faster within a step."""
 
-    def heights(number: float, limiter: Limiter, count: int) -> Array:
+    def start(count: int) -> Scene:
         cells = Cells(0.0, 1.0, count)
         y = 2 * np.pi * cells.x
         mean = np.sinc(1 / count)
         heap = Profile(1.0 + 0.2 * mean * np.sin(y), 0.1 * mean * np.cos(y))
-        scene = Scene(cells, heap, friction=Frictionless(), boundary="periodic", epsilon=BETA)
-        return simulate(scene, Macroscopic(4, order=2, limiter=limiter), Courant(number, 0.3), 10**6).h[-1]
+        return Scene(cells, heap, friction=Frictionless(), boundary="periodic", epsilon=BETA)
 
     rows: list[list[str | float]] = []
     widths = [1 / count for count in counts[:-1]]
     limit = largest_courant(Macroscopic(4, order=2))
     for limiter, number in (("between", 0.25), ("between", limit), ("mc", limit)):
-        fine = [heights(number, limiter, count) for count in counts]
-        apart = [float(np.abs(b.reshape(-1, 2).mean(axis=1) - a).mean()) for a, b in pairwise(fine)]
+        fine = family(list(map(start, counts)), Macroscopic(4, order=2, limiter=limiter), Courant(number, 0.3))
+        heights = pairwise(run.arrays["h"] for run in fine)
+        apart = [float(np.abs(b.reshape(-1, 2).mean(axis=1) - a).mean()) for a, b in heights]
         name = f"second order, {limiter}, Courant {number}"
         rows.append([name, *apart, *falls(widths, apart)])
         chapter.claim(f"waves of both families, {name}: order in dx on the finest cells",
@@ -203,7 +206,7 @@ def compared(chapter: Chapter, found: dict[str, Panel], wave: dict[str, list[flo
     for what in (*HALVED, "vacuum"):
         e = {name: panel.lines[what][at] for name, panel in found.items()}
         sharp = JUDGES[what]
-        mc = sharp.error(sharp.run(Macroscopic(4, order=2, limiter="mc"), Courant(0.49, sharp.end), 280))
+        (mc,) = sharp.errors(Macroscopic(4, order=2, limiter="mc"), Courant(0.49, sharp.end), [280])
         rows.append(row(what, e, mc))
         chapter.claim(f"{what}, dx = 0.05, Courant 0.5 and 0.49: L1(h) of first order over that of second",
                       e[FIRST] / e[SECOND], low=2.0 if what in HALVED else 1.5)  # fmt: skip
@@ -230,16 +233,10 @@ def rounding(chapter: Chapter) -> None:
     for what, case in SLIDES.items():
         worst = []
         for method, number in METHODS.values():
-            worst.append(max(miss(case, case.run(method, Courant(number, case.end), count)) for count in (70, 140)))
+            worst.append(max(map(case.miss, case.runs(method, Courant(number, case.end), (70, 140)))))
         rows.append([what, *worst])
         chapter.claim(f"{what}: largest error of h and q, over eps and steps, all methods", max(worst), high=8.0)
     chapter.table("Largest error of h and q at the end, over eps and number of steps", ("", *METHODS), rows)
-
-
-def miss(case: Case, one: Run) -> float:
-    """Largest error of h and q at the end, over eps and the number of steps."""
-    h, q = case.exact.averages(one.scene.cells, float(one.t[-1]))
-    return float(max(np.abs(one.h[-1] - h).max(), np.abs(one.q[-1] - q).max()) / (EPS * one.steps))
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 from claims import Chapter, run
-from laboratory.measures import distance
+from laboratory.family import distance, family
 from laboratory.orders import order
 from laboratory.pictures import COLOURS
 from laboratory.repaired import DELTA, Array, pile, steps
@@ -38,7 +38,6 @@ from kinsim import (
     load_scene,
     simulate,
 )
-from kinsim.clock import Replay
 from kinsim.kinetic.equilibrium import EQUILIBRIA
 
 
@@ -106,20 +105,15 @@ def nodes(chapter: Chapter, counts: tuple[int, ...]) -> None:
     """L1(h) to the closed form at t = 1.5, over the number of nodes."""
     scene, rows = column(64), []
     for order_ in (1, 2):
-        twin = simulate(scene, Macroscopic(4, order=order_), Courant(0.8 / order_, 1.5), 10**6)
-        clock = Replay(tuple(twin.dt.tolist()), end=1.5)
+        (twin,) = family(scene, Macroscopic(4, order=order_), Courant(0.8 / order_, 1.5))
         for name in ("cell-average", "matched"):
-            off = [
-                distance(simulate(scene, Kinetic(4, Uniform(n), name, order=order_), clock, 10**6, force=True), twin)
-                for n in counts
-            ]
+            grids = [Kinetic(4, Uniform(n), name, order=order_) for n in counts]
+            off = [distance(one, twin, scene) for one in family(scene, grids, twin.replay, force=True)]
             rows.append([f"{name}, order {order_}", *off])
             chapter.claim(f"{name}, order {order_}: order in the number of nodes of L1(h) to the closed form",
                           -order(counts, off), low=1.5)  # fmt: skip
-        off = [
-            distance(simulate(scene, Kinetic(4, Fitted(n), order=order_), clock, 10**6, force=True), twin)
-            for n in (2, 4, 6, 8)
-        ]
+        few = [Kinetic(4, Fitted(n), order=order_) for n in (2, 4, 6, 8)]
+        off = [distance(one, twin, scene) for one in family(scene, few, twin.replay, force=True)]
         chapter.table(
             f"L1(h) to the closed form, fitted nodes, order {order_}", [f"{n} nodes" for n in (2, 4, 6, 8)], [off]
         )

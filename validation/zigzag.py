@@ -18,7 +18,8 @@ from dataclasses import replace
 
 import numpy as np
 from claims import Chapter, run
-from laboratory.measures import distance, disturbed, order
+from laboratory.family import distance, family
+from laboratory.measures import disturbed, order
 from laboratory.pictures import COLOURS, MARKS
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
@@ -121,9 +122,10 @@ def converging(chapter: Chapter, nodes: tuple[int, ...]) -> None:
         scene, _, clock = load_scene(name)
         clock = replace(clock, steps=2000)
         for scheme in (1, 3):
-            twin = simulate(scene, Macroscopic(scheme), clock, 2000)
-            floor = distance(simulate(disturbed(scene, SIZE), Macroscopic(scheme), clock, 2000), twin)
-            off = [distance(simulate(scene, Kinetic(scheme, Uniform(n)), clock, 2000), twin) for n in nodes]
+            closed, grids = Macroscopic(scheme), [Kinetic(scheme, Uniform(n)) for n in nodes]
+            scenes = [scene, disturbed(scene, SIZE), *[scene] * len(nodes)]
+            twin, nudged, *each = family(scenes, [closed, closed, *grids], clock)
+            floor, *off = (distance(one, twin, scene) for one in (nudged, *each))
             rows.append([name, scheme, floor, *off])
             if scheme == 1:
                 if name == "parabola":

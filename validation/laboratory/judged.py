@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from kinsim import Cells, ConstantSlope, Coulomb, Courant, Fixed, Kinetic, Macroscopic, Profile, Run, Scene, simulate
-from kinsim.clock import Clock
+from kinsim import Cells, ConstantSlope, Coulomb, Courant, Fixed, Profile, Scene
+from kinsim.clock import AnyClock
 from kinsim.exact import (
     AcceleratedRiemann,
     ParabolicCap,
@@ -19,9 +20,12 @@ from kinsim.exact import (
     TravellingShock,
     UniformSlide,
 )
-from kinsim.run import ENDED
+from kinsim.studies.record import Record
+
+from .family import Method, family
 
 BETA = 0.4
+EPS = float(np.finfo(float).eps)
 DOWN, UP = {"pull": 0.4, "resistance": 0.3}, {"pull": 0.3, "resistance": 0.4}
 STEEP, HELD = {"pull": 0.6, "resistance": 0.1}, {"pull": 0.1, "resistance": 0.4}
 MIDDLE, EVERYWHERE = (-1.0, 3.5), (-3.0, 7.0)
@@ -59,17 +63,38 @@ class Case:
 
     def scene(self, count: int) -> Scene:
         """The start, on `count` cells."""
-        return scene_of(self.exact, Cells(-5, 9, count), BETA)
+        return scene_of(self.exact, self.cells(count), BETA)
 
-    def run(self, method: Kinetic | Macroscopic, clock: Clock, count: int) -> Run:
-        """A run from the exact start."""
-        return simulate(self.scene(count), method, clock, 10**6)
+    def cells(self, count: int) -> Cells:
+        """`count` of them."""
+        return Cells(-5, 9, count)
 
-    def error(self, run: Run) -> float:
-        """L1(h) between the end of a run and the solution."""
-        return error(self.exact, run, self.inner)
+    def runs(
+        self, methods: Method | Sequence[Method], clocks: AnyClock | Sequence[AnyClock], counts: Sequence[int]
+    ) -> list[Record]:
+        """Runs from the exact start, one for each number of cells, with its own method and clock or one for all."""
+        return family([self.scene(count) for count in counts], methods, clocks)
 
-    def clock(self, number: float | None, count: int) -> Clock:
+    def errors(
+        self, methods: Method | Sequence[Method], clocks: AnyClock | Sequence[AnyClock], counts: Sequence[int]
+    ) -> list[float]:
+        """L1(h) between the end of each such run and the solution."""
+        return [self.error(run) for run in self.runs(methods, clocks, counts)]
+
+    def error(self, run: Record) -> float:
+        """L1(h) between the end of a run and the solution, where no open end has reached."""
+        x, cells = run.arrays["x"], self.cells(run.arrays["x"].size)
+        keep = (x > self.inner[0]) & (x < self.inner[1])
+        h, _ = self.exact.averages(cells, run.figures["t"])
+        return float(np.abs(run.arrays["h"] - h)[keep].sum() * cells.dx)
+
+    def miss(self, run: Record) -> float:
+        """Largest error of h and q at the end, over eps and the number of steps."""
+        h, q = self.exact.averages(self.cells(run.arrays["x"].size), run.figures["t"])
+        off = max(np.abs(run.arrays["h"] - h).max(), np.abs(run.arrays["history_q"][-1] - q).max())
+        return float(off / (EPS * run.figures["steps"]))
+
+    def clock(self, number: float | None, count: int) -> Courant | Fixed:
         """A Courant number; or, for None, the paper's dt = 0.02 dx."""
         if number is not None:
             return Courant(number, self.end)
@@ -119,12 +144,3 @@ def scene_of(exact: Any, cells: Cells, beta: float) -> Scene:
     friction = Coulomb(math.atan(getattr(exact, "resistance", 0.0) / math.cos(zeta)))
     heap = Profile(h, np.divide(q, h, out=np.zeros_like(h), where=h > 0))
     return Scene(cells=cells, heap=heap, chute=ConstantSlope(zeta), friction=friction, epsilon=beta / math.cos(zeta))
-
-
-def error(exact: Any, run: Run, inner: tuple[float, float]) -> float:
-    """L1 error of h at the end of a run, between two places that no open end has reached."""
-    if run.verdict.kind not in ENDED:
-        raise RuntimeError(f"a run that did not come to its end has no error: {run.verdict.message}")
-    keep = (run.x > inner[0]) & (run.x < inner[1])
-    h, _ = exact.averages(run.scene.cells, float(run.t[-1]))
-    return float(np.abs(run.h[-1] - h)[keep].sum() * run.scene.cells.dx)
