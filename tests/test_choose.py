@@ -94,6 +94,19 @@ def test_pilots_of_a_courant_clock_take_their_own_steps() -> None:
     np.testing.assert_allclose([told.predicted(method) for method in methods], more * told.margin, rtol=1e-12)
 
 
+def test_a_twin_with_a_faster_front_takes_the_same_steps() -> None:
+    """On a slide that comes to rest the closed form has a front of its own, too fast for the steps of few nodes."""
+    scene, method, clock = load_scene("bend")
+    scene, method = replace(scene, cells=replace(scene.cells, count=48)), replace(method, velocity=Uniform(32))
+    run = simulate(scene, method, clock)
+    assert simulate(scene, method.twin, run.replay).verdict.kind == "cfl-broken"
+    twin = simulate(scene, method.twin, run.replay, force=True)
+    assert twin.t[-1] == run.t[-1]
+    apart = np.abs(run.h[-1] - twin.h[-1]).sum() / scene.initial()[0].sum()
+    assert velocity_error(run) == pytest.approx(apart, rel=1e-12)
+    assert Pilots(scene, method, clock).predicted(method) == velocity_error(run) < 0.1
+
+
 def test_a_heap_given_cell_by_cell_has_pilots() -> None:
     """Averaged, so that no mass is lost; between cells that do not match, too."""
     heap = Profile(*((lambda h, q: (h, q / h))(*SILO.initial())))

@@ -19,9 +19,9 @@ import numpy as np
 from scipy.special import stdtrit
 
 from ..balance.stages import Array
-from ..clock import AnyClock, Courant, Fixed
+from ..clock import Courant, Fixed
 from ..kinetic.velocity import Fitted, Uniform
-from ..method import Kinetic, Macroscopic
+from ..method import Kinetic
 from ..run import ENDED
 from ..scene import Scene
 from ..studies.member import Member, Request
@@ -43,6 +43,8 @@ CONFIDENCE = 0.975
 """So often the next change of a velocity error, normally distributed about none, is to stay within the margin."""
 
 DTS = Request(fields=("dt",))
+SAME_STEPS = Request(force=True)
+"""Of the twin: a thin front of its own may be faster than those of the pilot whose steps it takes."""
 
 
 def levels(count: int) -> tuple[float, ...]:
@@ -91,7 +93,7 @@ class Pilots:
         self._found: dict[Kinetic, Array] = {}
         self._awake: dict[Kinetic, float] = {}
         self._twin = method.twin
-        closed = self._run([(level, method.twin, level.clock) for level in self._levels])
+        closed = self._run([Member(level.scene, method.twin, level.clock, SAME_STEPS) for level in self._levels])
         self._of_twin = _awake(closed[-1])
         steps = max(record.figures.get("steps", 0) for record in closed)
         self.floor = float(np.finfo(float).eps) * steps / shares[-1]
@@ -105,19 +107,18 @@ class Pilots:
 
     def _errors(self, of: Sequence[_Level], methods: Sequence[Kinetic]) -> tuple[Array, list[float]]:
         """Velocity errors over (level, method), each to the twin in the same steps, and shares awake on the last."""
-        asked = [(level, method, level.clock) for level in of for method in methods]
-        runs = self._run(asked)
-        twins = self._run([
-            (level, self._twin, clock if isinstance(clock, Fixed) else run.replay or clock)
-            for (level, _, clock), run in zip(asked, runs, strict=True)
-        ])  # fmt: skip
-        apart = [level.apart(run, twin) for (level, _, _), run, twin in zip(asked, runs, twins, strict=True)]
+        asked = [(level, method) for level in of for method in methods]
+        runs = self._run([Member(level.scene, method, level.clock, DTS) for level, method in asked])
+        same = [level.clock if self._sleeps else run.replay or level.clock
+                for (level, _), run in zip(asked, runs, strict=True)]  # fmt: skip
+        twins = self._run([Member(level.scene, self._twin, clock, SAME_STEPS)
+                           for (level, _), clock in zip(asked, same, strict=True)])  # fmt: skip
+        apart = [level.apart(run, twin) for (level, _), run, twin in zip(asked, runs, twins, strict=True)]
         found = np.maximum(np.reshape(apart, (len(of), len(methods))), self.floor)
         return found, [_awake(run) for run in runs[len(runs) - len(methods) :]]
 
-    def _run(self, asked: Sequence[tuple[_Level, Kinetic | Macroscopic, AnyClock]]) -> list[Record]:
+    def _run(self, members: Sequence[Member]) -> list[Record]:
         """The record of each."""
-        members = [Member(level.scene, method, clock, DTS) for level, method, clock in asked]
         new = [one for one in members if one.key not in self._known]
         self._known |= dict(zip((one.key for one in new), collect(new, **self._options), strict=True))
         return [self._known[one.key] for one in members]
