@@ -24,6 +24,9 @@ from kinsim.lab.setup import Setup
 
 CELLS, NODES = 320, 128
 
+WINDOWS = ((1400, 900), (1600, 1160))
+"""Of the browser, in pixels: one of a laptop, and one in which the picture of the page is taken."""
+
 STEPS = 60
 """After so many the silo has broken, and still moves."""
 
@@ -53,24 +56,25 @@ def main() -> None:
             found = re.search(r"http://\S+", running.stdout.readline())
             assert found
             try:
-                rate, browser = measure(found[0], asked.seconds, asked.picture)
+                measured = [measure(found[0], asked.seconds, window, asked.picture) for window in WINDOWS]
             finally:
                 running.terminate()
-    print(f"kinsim lab: {rate:.1f} pictures a second at {CELLS} x {NODES}, {browser}")
-    row = [f"{CELLS} x {NODES}", f"{rate:.1f}", f"{os.cpu_count()} cores, {platform.machine()}", browser]
+    rows = []
+    for (wide, high), (rate, browser) in zip(WINDOWS, measured, strict=True):
+        print(f"kinsim lab: {rate:.1f} pictures a second at {CELLS} x {NODES}, {wide} x {high} pixels, {browser}")
+        machine = f"{os.cpu_count()} cores, {platform.machine()}"
+        rows.append([f"{CELLS} x {NODES}", f"{wide} x {high}", f"{rate:.1f}", machine, browser])
     caption = f"Pictures that the browser painted, counted for {asked.seconds:g} s"
-    heads = ["cells x nodes", "pictures a second", "machine", "browser"]
+    heads = ["cells x nodes", "window", "pictures a second", "machine", "browser"]
     asked.out.parent.mkdir(parents=True, exist_ok=True)
-    asked.out.write_text(
-        json.dumps({"tables": [{"caption": caption, "heads": heads, "rows": [row]}]}), encoding="utf-8"
-    )
+    asked.out.write_text(json.dumps({"tables": [{"caption": caption, "heads": heads, "rows": rows}]}), encoding="utf-8")
 
 
-def measure(address: str, seconds: float, picture: Path | None) -> tuple[float, str]:
+def measure(address: str, seconds: float, window: tuple[int, int], picture: Path | None) -> tuple[float, str]:
     """Play for so many seconds; the rate and the browser."""
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        page = browser.new_page(viewport={"width": 1600, "height": 1160})
+        page = browser.new_page(viewport={"width": window[0], "height": window[1]})
         page.goto(address)
         page.locator(".now").wait_for(timeout=LONG)
         play = page.locator(".play button")

@@ -301,6 +301,17 @@ def test_the_command_ends_while_kernels_compile(chromium):
         page.close()
 
 
+def test_tabs_that_are_closed_while_they_play_are_no_event(chromium):
+    with serving(sys.executable, "-m", "kinsim", "lab", "silo", "--no-browser") as address:
+        for _ in range(4):
+            page = chromium.new_page()
+            page.goto(address)
+            expect(page.locator(".now")).to_contain_text("step 0", timeout=FIRST)
+            press(page, "play")
+            expect(page.locator(".now")).to_contain_text("pictures/s")
+            page.close()
+
+
 def test_the_shaded_faces_are_those_that_the_scheme_sums_up(page):
     options = page.locator(".faces option")
     expect(options).to_have_text(["upwind face (19)", "balanced face (25)"])

@@ -33,6 +33,7 @@ def serve(scene: str, port: int, browser: bool, tell: Callable[[str], None]) -> 
 
     panel.extension()
     logging.getLogger("bokeh").setLevel(logging.ERROR)  # a tab that is closed while it is drawn is no event
+    logging.getLogger("asyncio").addFilter(_matters)
     port = _free(port)
     server: Any = panel.io.server.get_server(
         {"/": lambda: Page(start).template()}, port=port, address=HOST, websocket_origin=[f"{HOST}:{port}"],
@@ -48,6 +49,13 @@ def serve(scene: str, port: int, browser: bool, tell: Callable[[str], None]) -> 
         loop.call_later(0.2, webbrowser.open, address)
     loop.start()
     server.stop()
+
+
+def _matters(record: logging.LogRecord) -> bool:
+    """Whether it is more than a picture that found its tab closed."""
+    from tornado.websocket import WebSocketClosedError
+
+    return not (record.exc_info and isinstance(record.exc_info[1], WebSocketClosedError))
 
 
 def _free(port: int) -> int:
