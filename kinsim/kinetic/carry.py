@@ -22,6 +22,7 @@ from .shift import split_shift
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Spans = NDArray[np.int64]
+Faces = tuple[Array, Array, Array, Array, Flags, Flags]
 Place = np.uint64
 
 BLOCK = 8
@@ -123,45 +124,51 @@ def shift_row(
 
 @kernel
 def carry(
-    h: Array, u: Array, h_left: Array, u_left: Array, h_right: Array, u_right: Array, at_left: Flags, at_right: Flags,
-    J: Array, pulled: Array, at: Array, speed: Array, beta: float, dxi: float, averaged: bool, lam: float,
-    cells: Spans, rows: Array, padded: Array, f: Array, span: Spans,
+    h: Array, u: Array, faces: Faces | None, J: Array, pulled: Array, at: Array, speed: Array, beta: float, dxi: float,
+    averaged: bool, lam: float, cells: Spans, rows: Array, padded: Array, f: Array, span: Spans,
 ) -> None:  # fmt: skip
     """f after transport and shift, shape (nx, n), zero outside of `span` before and after.
 
-    h, u are ghosted; `at` are the nodes, or with `averaged` the n + 1 edges, and `speed` is |xi|. Where at_left and
-    at_right say so a cell takes the states of its face at that wall, else (19). `cells`, shape (nx + 2, 2), `rows`,
-    shape (7, n), and `padded`, shape (n + 2,), are room to work in.
+    h, u are ghosted; `at` are the nodes, or with `averaged` the n + 1 edges, and `speed` is |xi|. `faces` are h_left,
+    u_left, h_right, u_right and at_left, at_right: where these say so a cell takes the states of its face at that wall,
+    else (19). `cells`, shape (nx + 2, 2), `rows`, shape (7, n), and `padded`, shape (n + 2,), are room to work in.
     """
     nx, n = J.size, speed.size
     half = n // 2
     for c in range(nx + 2):
         cells[c, 0], cells[c, 1] = cover(h[c], u[c], beta, dxi, n)
-    low_face, high_face = half, half
+    low_face, high_face, low_next, high_next = half, half, half, half
     one = Place(1)
     before, here, after, face, next_face = Place(0), one, Place(2), Place(3), Place(5)
     for c in range(nx + 2):
         fill_row(h[c], u[c], beta, dxi, averaged, at, cells[c, 0], cells[c, 1], rows, after)
-        low_next, high_next = half, half
-        if c > 0 and ((c > 1 and at_right[c - 2]) or (c <= nx and at_left[c - 1])):
-            k = c - 1
-            low, high = cover(h_left[k], u_left[k], beta, dxi, n)
-            low, high_next = max(low, half), max(high, half)
-            fill_row(h_left[k], u_left[k], beta, dxi, averaged, at, low, high_next, rows, next_face)
-            cap(rows, next_face, here, low, high_next)
-            low, high = cover(h_right[k], u_right[k], beta, dxi, n)
-            low_next, high = min(low, half), min(high, half)
-            fill_row(h_right[k], u_right[k], beta, dxi, averaged, at, low_next, high, rows, next_face + one)
-            cap(rows, next_face + one, after, low_next, high)
+        if faces is not None:
+            h_left, u_left, h_right, u_right, at_left, at_right = faces
+            low_next, high_next = half, half
+            if c > 0 and ((c > 1 and at_right[c - 2]) or (c <= nx and at_left[c - 1])):
+                k = c - 1
+                low, high = cover(h_left[k], u_left[k], beta, dxi, n)
+                low, high_next = max(low, half), max(high, half)
+                fill_row(h_left[k], u_left[k], beta, dxi, averaged, at, low, high_next, rows, next_face)
+                cap(rows, next_face, here, low, high_next)
+                low, high = cover(h_right[k], u_right[k], beta, dxi, n)
+                low_next, high = min(low, half), min(high, half)
+                fill_row(h_right[k], u_right[k], beta, dxi, averaged, at, low_next, high, rows, next_face + one)
+                cap(rows, next_face + one, after, low_next, high)
         if c > 1:
             i = c - 2
             low = min(cells[i, 0], min(cells[i + 1, 0], cells[c, 0]))
             high = max(cells[i, 1], max(cells[i + 1, 1], cells[c, 1]))
-            low, high = min(low, min(low_face, low_next)), max(high, max(high_face, high_next))
-            leaving, coming = face + one if at_left[i] else here, next_face + one if at_right[i] else after
-            transport_row(rows, here, leaving, coming, speed, lam, low, min(high, half), padded)
-            leaving, coming = next_face if at_right[i] else here, face if at_left[i] else before
-            transport_row(rows, here, leaving, coming, speed, lam, max(low, half), high, padded)
+            if faces is None:
+                transport_row(rows, here, here, after, speed, lam, low, min(high, half), padded)
+                transport_row(rows, here, here, before, speed, lam, max(low, half), high, padded)
+            else:
+                at_left, at_right = faces[4], faces[5]
+                low, high = min(low, min(low_face, low_next)), max(high, max(high_face, high_next))
+                leaving, coming = face + one if at_left[i] else here, next_face + one if at_right[i] else after
+                transport_row(rows, here, leaving, coming, speed, lam, low, min(high, half), padded)
+                leaving, coming = next_face if at_right[i] else here, face if at_left[i] else before
+                transport_row(rows, here, leaving, coming, speed, lam, max(low, half), high, padded)
             shift_row(padded, low, high, J[i], pulled[i], dxi, f, i, span)
         low_face, high_face = low_next, high_next
         before, here, after = here, after, before

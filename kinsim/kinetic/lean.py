@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..balance.stages import Array, Stages, reach
+from ..balance.stages import Array, Stages
 from .carry import carry
 from .equilibrium import EQUILIBRIA, Status
 from .occupied import LANES, add_held, foresee, sum_cells
@@ -28,6 +28,8 @@ class OnDemand(Density):
     """The stages of the last step."""
     _stands = False
     """Whether the last step is the one from the state at which M stands."""
+    _top = 0.0
+    """The outermost node that M occupies there."""
 
     def _allocate(self, grid: Grid) -> None:
         self._see_room(grid)
@@ -51,16 +53,19 @@ class OnDemand(Density):
 
     def equilibrium(self, now: Stages) -> float:
         """The half-range sums of M(h, xi - u); returns the outermost occupied node."""
-        self.reach = reach(now, self._shown, False)
+        self._sum(now)
         if not self._velocity.fits(self.grid, self.reach + self._room):
             self._allocate(self._velocity.grid(self.reach + self._room))
+            self._sum(now)
         self._now, self._stands = now, False
         self._made.discard("M")
-        shape = (float(self._beta), self.grid.dxi, self._averaged)
-        self._top = sum_cells(
-            now.h, now.u, *shape, self._w1, self._w2, self._lanes, self._sums, now.low, now.high
-        )  # fmt: skip
         return self._top
+
+    def _sum(self, now: Stages) -> None:
+        self._top, self.reach = sum_cells(
+            now.h, now.u, float(self._beta), self.grid.dxi, self._averaged, self._w1, self._w2, self._lanes,
+            self._sums, now.low, now.high,
+        )  # fmt: skip
 
     def support(self, now: Stages) -> None:
         """The outermost occupied nodes of each cell are known with the sums."""
@@ -134,11 +139,13 @@ class OnDemand(Density):
         f = self._place("f", self._nx)
         if "f" not in self._made:
             now, at, grid = self._now, self._now.balanced, self.grid
+            faces = None
+            if self._scheme.has_faces:
+                faces = (at.h_left, at.u_left, at.h_right, at.u_right, now.at_left, now.at_right)
             rows, padded = self._place("rows", 7), self._place("padded", 1, grid.count + 2)[0]
             carry(
-                self._h, self._u, at.h_left, at.u_left, at.h_right, at.u_right, now.at_left, now.at_right,
-                now.J, now.h1, self._at, self._speed, float(self._beta), grid.dxi, self._averaged, self._lam,
-                self._covers, rows, padded, f, self._spans,
+                self._h, self._u, faces, now.J, now.h1, self._at, self._speed, float(self._beta), grid.dxi,
+                self._averaged, self._lam, self._covers, rows, padded, f, self._spans,
             )  # fmt: skip
             self._made.add("f")
         return f

@@ -115,14 +115,15 @@ def add_lanes(
 def sum_cells(
     h: Array, u: Array, beta: float, dxi: float, averaged: bool, w1: Array, w2: Array, room: Array,
     sums: Array, low: Array, high: Array,
-) -> float:  # fmt: skip
+) -> tuple[float, float]:  # fmt: skip
     """Half-range sums of each ghosted cell, shape (4, nx + 2), and its outermost occupied nodes.
 
     M is made node by node for LANES cells at once in `room`, shape (8 LANES,), and never stored. The sums of a cell
     run outward from xi = 0 as those of `transport.half_sums` do, and what they add besides is zero: they are bitwise
-    those of stored rows, and so are the outermost nodes. Returns the outermost of all nodes, 0 if all is dry.
+    those of stored rows, and so are the outermost nodes. Returns the outermost of all nodes and max(|u| + c), both 0
+    where all is dry.
     """
-    top = 0.0
+    top, reach = 0.0, 0.0
     for start in range(0, h.size, LANES):
         stop = min(start + LANES, h.size)
         slowest, quickest = np.inf, -np.inf
@@ -135,8 +136,9 @@ def sum_cells(
             room[C + i] = math.sqrt(room[SQUARE + i])
         for i in range(LANES):
             c = room[C + i]
-            slowest = min(slowest, room[V + i] - c if c > 0.0 else np.inf)
-            quickest = max(quickest, room[V + i] + c if c > 0.0 else -np.inf)
+            slowest = min(slowest, room[V + i] - c if room[H + i] > 0.0 else np.inf)
+            quickest = max(quickest, room[V + i] + c if room[H + i] > 0.0 else -np.inf)
+        reach = max(reach, max(-slowest, quickest))
         add_lanes(beta, dxi, averaged, w1, w2, slowest, quickest, room)
         for i in range(start, stop):
             sums[0, i], sums[1, i], high[i] = room[M1 + i - start], room[M2 + i - start], room[LAST + i - start]
@@ -150,7 +152,7 @@ def sum_cells(
             if high[i] == -np.inf and low[i] < 0.0:
                 high[i] = -first_node(h[i], -u[i], beta, dxi, averaged)
             top = max(top, max(-low[i], high[i]))
-    return top
+    return top, reach
 
 
 @kernel_inner
