@@ -10,7 +10,7 @@ import numpy as np
 from .balance.scheme4 import Held, HeldSloped, Reflecting
 from .balance.schemes import Scheme, Scheme1, Scheme2, Scheme3Cell, Scheme3Face, flat
 from .balance.settle import settle, stand_held
-from .balance.slide import TILE, slide, stand
+from .balance.slide import ROOM, slide, stand
 from .balance.stages import TOP, Array, Stages, reach
 from .balance.update import mean_of_stages, update
 from .balance.wing import Wing
@@ -137,21 +137,17 @@ class Sliding(Stepper):
     def _move(self, dt: float) -> float:
         """The rest of the step; returns the mass that is mended, per dx."""
         now = self.now
-        slide(now.h, now.u, now.q, now.F1, now.F2, *self._ground, dt, now.h1, now.qhat, now.J, now.q1)
+        slide(now.h, now.u, now.q, now.F1, now.F2, *self._ground, dt, now.h1, now.qhat, now.J, now.q1, ROOM)
         return 0.0
 
 
 class Swept(Sliding):
     """The same in closed form, where the fluxes are made when the step begins; see `macroscopic.sweep`."""
 
-    def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
-        super().__init__(scene, method)
-        self._room = (np.zeros((2, TILE + 1)), TOP)
-
     def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
         """Stand at U^n, and sum up what leaves the cells, (24)."""
         now = self.now
-        self._fastest = sweep(h, q, self._ground[2], *self._ends, now.h, now.u, now.q, *self._room, now.F1, now.F2)
+        self._fastest = sweep(h, q, self._ground[2], *self._ends, now.h, now.u, now.q, now.F1, now.F2, ROOM)
         return self._fastest
 
     def _fluxes(self) -> None:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..kernel import kernel, kernel_inner
+from ..kernel import kernel, kernel_inner, kernel_part
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -33,15 +33,24 @@ def static_acceleration(slope: float, s: float, R: float) -> float:
     return min(s + R, max(slope, s - R))
 
 
+@kernel_part
+def drive(u: float, before: float, after: float, s: float, R: float, beta: float, dx: float) -> float:
+    """g of scheme 1, with g~ where u = 0; `before` and `after` are the heights of the neighbours."""
+    still = static_acceleration(beta * ((after - before) / (2.0 * dx)), s, R)
+    return still if u == 0.0 else acceleration(u, s, R)
+
+
 @kernel
 def sliding(h: Array, u: Array, pulled: Array, s: float, R: float, beta: float, dx: float, dt: float, J: Array) -> None:
     """Scheme 1: J = dt g h^{n+1}, with g~ where u = 0; `pulled` is the height that the force acts on."""
     for i in range(J.size):
-        if u[i + 1] == 0.0:
-            g = static_acceleration(beta * ((h[i + 2] - h[i]) / (2.0 * dx)), s, R)
-        else:
-            g = acceleration(u[i + 1], s, R)
-        J[i] = dt * g * pulled[i]
+        J[i] = dt * drive(u[i + 1], h[i], h[i + 2], s, R, beta, dx) * pulled[i]
+
+
+@kernel_part
+def is_dry(before: float, here: float, after: float, h1: float) -> bool:
+    """Whether h^{n+1} is below the smallest normal number, or below 0 by the rounding of the heights around."""
+    return (h1 < DRY) & (h1 >= -(ROUNDING * ((before + after) + here)))
 
 
 @kernel
@@ -51,8 +60,7 @@ def keep_dry(h: Array, h1: Array, qhat: Array) -> None:
     All three heights could come through a face, each with its rounding; what is below 0 by more broke (28), and stays.
     """
     for i in range(h1.size):
-        rounding = ROUNDING * ((h[i] + h[i + 2]) + h[i + 1])
-        dry = (h1[i] < DRY) & (h1[i] >= -rounding)
+        dry = is_dry(h[i], h[i + 1], h[i + 2], h1[i])
         qhat[i] = 0.0 if dry else qhat[i]
         h1[i] = 0.0 if dry else h1[i]
 

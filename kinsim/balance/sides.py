@@ -36,14 +36,26 @@ def both_sides(h: float, u: float, beta: float, m1: float, m2: float) -> tuple[f
     return p1, p2, -n1, n2
 
 
+@kernel_part
+def between(
+    h_left: float, u_left: float, beta_left: float, m1_left: float, m2_left: float,
+    h_right: float, u_right: float, beta_right: float, m1_right: float, m2_right: float,
+) -> tuple[float, float]:  # fmt: skip
+    """F of (24) at one face: xi > 0 from the left and xi < 0 from the right."""
+    p1, p2 = ahead(h_left, u_left, beta_left, m1_left, m2_left)
+    n1, n2 = ahead(h_right, -u_right, beta_right, m1_right, m2_right)
+    return p1 - n1, p2 + n2
+
+
 @kernel_inner
 def faces_of_cells(h: Array, u: Array, beta: Local, m1: Array, m2: Array, F1: Array, F2: Array) -> None:
     """F of (24): xi > 0 from the cell left of a face and xi < 0 from the one right of it; h, u, m are ghosted."""
     for i in range(F1.size):
-        p1, p2 = ahead(h[i], u[i], at(beta, i), m1[i], m2[i])
-        n1, n2 = ahead(h[i + 1], -u[i + 1], at(beta, i + 1), m1[i + 1], m2[i + 1])
-        F1[i] = p1 - n1
-        F2[i] = p2 + n2
+        here, after = (
+            (h[i], u[i], at(beta, i), m1[i], m2[i]),
+            (h[i + 1], u[i + 1], at(beta, i + 1), m1[i + 1], m2[i + 1]),
+        )
+        F1[i], F2[i] = between(*here, *after)
 
 
 @kernel_inner
@@ -52,7 +64,5 @@ def faces_of_states(
 ) -> None:
     """The same for faces with states of their own; the rows of `m` are the moments of the left and right states."""
     for i in range(F1.size):
-        p1, p2 = ahead(h_left[i], u_left[i], at(left(beta), i), m[0, i], m[1, i])
-        n1, n2 = ahead(h_right[i], -u_right[i], at(right(beta), i), m[2, i], m[3, i])
-        F1[i] = p1 - n1
-        F2[i] = p2 + n2
+        here = (h_left[i], u_left[i], at(left(beta), i), m[0, i], m[1, i])
+        F1[i], F2[i] = between(*here, h_right[i], u_right[i], at(right(beta), i), m[2, i], m[3, i])

@@ -96,12 +96,18 @@ class Stages:
         extend(scene.boundary, self.h, self.u)
 
 
+@kernel_part
+def velocity(h: float, q: float) -> float:
+    """u = q/h where there is mass, 0 where there is none."""
+    return q / h if h > 0.0 else 0.0
+
+
 @kernel
 def split(h: Array, q: Array, h_ghosted: Array, u_ghosted: Array) -> None:
-    """u = q/h where there is mass, 0 where there is none, into the inner cells of ghosted arrays."""
+    """h and u = q/h into the inner cells of ghosted arrays."""
     for i in range(h.size):
         h_ghosted[i + 1] = h[i]
-        u_ghosted[i + 1] = q[i] / h[i] if h[i] > 0.0 else 0.0
+        u_ghosted[i + 1] = velocity(h[i], q[i])
 
 
 def reach(now: Stages, beta: Shown, balanced: bool) -> float:
@@ -140,6 +146,13 @@ def fastest(h: Array, u: Array, beta: Local, faces: bool, room: Array) -> float:
     return top
 
 
+@kernel_part
+def speed(h: float, u: float, beta: float) -> float:
+    """|u| + sqrt(2 beta h) where there is mass, else 0."""
+    quickest = abs(u) + np.sqrt(2.0 * beta * max(h, 0.0))
+    return quickest if h > 0.0 else 0.0
+
+
 @kernel_inner
 def quicken(h: Array, u: Array, beta: Local, room: Array) -> None:
     """Raise the speeds kept side by side in `room` to those of the cells with mass."""
@@ -147,8 +160,7 @@ def quicken(h: Array, u: Array, beta: Local, room: Array) -> None:
         first, last = np.uint64(begin), np.uint64(min(begin + room.size, h.size))
         for i in range(first, last):
             k = i - first
-            speed = abs(u[i]) + np.sqrt(2.0 * at(beta, i) * max(h[i], 0.0))
-            room[k] = max(room[k], speed if h[i] > 0.0 else 0.0)
+            room[k] = max(room[k], speed(h[i], u[i], at(beta, i)))
 
 
 @kernel_part
