@@ -91,7 +91,7 @@ def example(kernel: object) -> list[object]:
         elif kind == "bool":
             arguments.append(True)
         elif kind == "int":
-            arguments.append({"half": 4, "low": 0, "high": 1, "n": n, "flux": 1}[name])
+            arguments.append({"half": 4, "low": 0, "high": 1, "begin": 1, "end": n, "i": 2, "n": n, "flux": 1}[name])
         else:
             arguments.append(float(dice.uniform(0.2, 0.6)))
     return arguments

@@ -68,19 +68,22 @@ def shift_linear(f: Array, J: Array, h1: Array, dxi: float, out: Array) -> float
     Returns:
         The mass that left the window, summed over the rows (times dxi, not yet times dx).
     """
-    n = f.shape[1]
+    n, one = f.shape[1], np.uint64(1)
     lost = 0.0
     for i in range(f.shape[0]):
         whole, theta = split_shift(J[i], h1[i], dxi, n)
-        back = J[i] < 0.0
+        keep, back, near = 1.0 - theta, J[i] < 0.0, np.uint64(whole)
+        both = np.uint64(max(n - 1 - whole, 0))  # entries to which two others come
         for j in range(n):
-            near, far = j - whole, j - whole - 1
-            moved = 0.0
-            if near >= 0:
-                moved = (1.0 - theta) * f[i, n - 1 - near if back else near]
-            if far >= 0:
-                moved += theta * f[i, n - 1 - far if back else far]
-            out[i, n - 1 - j if back else j] = moved
+            out[i, j] = 0.0
+        if whole < n:
+            out[i, n - 1 - whole if back else whole] = keep * f[i, n - 1 if back else 0]
+        if back:
+            for k in range(both):
+                out[i, k] = keep * f[i, k + near] + theta * f[i, k + near + one]
+        else:
+            for k in range(both):
+                out[i, k + near + one] = keep * f[i, k + one] + theta * f[i, k]
         for j in range(max(n - whole - 1, 0), n):
             gone = 1.0 if j >= n - whole else theta
             lost += gone * f[i, n - 1 - j if back else j]

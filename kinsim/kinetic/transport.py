@@ -69,16 +69,15 @@ def transport(M: Array, B: Array, at_left: Flags, at_right: Flags, xi: Array, la
     n = xi.size
     half = n // 2
     for i in range(f.shape[0]):
+        here = M[i + 1]
+        left, right = B[i] if at_left[i] else here, B[i + 1] if at_right[i] else M[i + 2]
         for j in range(half):
-            right = B[i + 1, j] if at_right[i] else M[i + 2, j]
-            left = B[i, j] if at_left[i] else M[i + 1, j]
             a = -lam * xi[j]
-            f[i, j] = (M[i + 1, j] - a * left) + a * right
+            f[i, j] = (here[j] - a * left[j]) + a * right[j]
+        left, right = B[i] if at_left[i] else M[i], B[i + 1] if at_right[i] else here
         for j in range(half, n):
-            right = B[i + 1, j] if at_right[i] else M[i + 1, j]
-            left = B[i, j] if at_left[i] else M[i, j]
             a = lam * xi[j]
-            f[i, j] = (M[i + 1, j] - a * right) + a * left
+            f[i, j] = (here[j] - a * right[j]) + a * left[j]
 
 
 @kernel

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arc import arc
-from ...kernel import kernel, kernel_inner
+from ...kernel import kernel, kernel_inner, kernel_part
 from ...local import Local, Sides, at, left, right
 from ..velocity import Grid
 from .rows import Array, put
@@ -54,22 +54,22 @@ class CellAverage:
 def sampled(h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, dxi: float, rows: Array) -> None:
     """M = sqrt(max(2 beta h - (xi - u)^2, 0)) / (pi beta) at the nodes."""
     half = rows.shape[1] // 2
-    side = np.empty(half)
+    xi = np.empty(2 * half)
+    for k in range(half):
+        xi[half + k], xi[half - 1 - k] = (k + 0.5) * dxi, -(k + 0.5) * dxi
     for i in range(rows.shape[0]):
-        sample_side(h_left[i], u_left[i], at(left(beta), i), dxi, side)
-        put(side, rows[i], True)
-        sample_side(h_right[i], -u_right[i], at(right(beta), i), dxi, side)
-        put(side, rows[i], False)
+        sample(h_left[i], u_left[i], at(left(beta), i), xi, rows, i, half, xi.size)
+        sample(h_right[i], u_right[i], at(right(beta), i), xi, rows, i, 0, half)
 
 
-@kernel_inner
-def sample_side(h: float, u: float, beta: float, dxi: float, side: Array) -> None:
-    """M(h, xi - u) at the nodes xi > 0."""
+@kernel_part
+def sample(h: float, u: float, beta: float, xi: Array, rows: Array, i: int, begin: int, end: int) -> None:
+    """M(h, xi - u) at the nodes from `begin` to below `end`."""
     square = 2.0 * beta * max(h, 0.0)
     scale = 1.0 / (math.pi * beta)
-    for k in range(side.size):
-        w = (k + 0.5) * dxi - u
-        side[k] = scale * math.sqrt(max(square - w * w, 0.0))
+    for j in range(np.uint64(begin), np.uint64(end)):
+        w = xi[j] - u
+        rows[i, j] = scale * math.sqrt(max(square - w * w, 0.0))
 
 
 @kernel_inner
