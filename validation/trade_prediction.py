@@ -146,7 +146,10 @@ def elsewhere(chapter: Chapter) -> None:
         ratios.setdefault(kind, []).extend((told / np.maximum(found, pilots.floor))[known])
     foretold = np.concatenate([np.array(of) for (_, count, _), of in ratios.items() if count >= OWN])
     measured = np.concatenate([np.array(of) for (_, count, _), of in ratios.items() if count < OWN])
-    chapter.claim("other scenes: share of predictions that bound the error", np.mean(foretold >= NEAR), low=0.95)
+    bounded = np.mean(foretold >= NEAR)  # of fifteen, at the small size, two may miss where one in twenty is to
+    chapter.claim(
+        "other scenes: share of predictions that bound the error", bounded, low=0.95 if chapter.full else 0.85
+    )
     chapter.claim("other scenes: predicted over measured, least", foretold.min(), low=0.1)
     chapter.claim("other scenes: predicted over measured, largest", foretold.max(), high=10.0)
     chapter.claim("scenes of few cells: predicted over measured, farthest from 1, less 1",
