@@ -66,8 +66,8 @@ def empty(h: float, u: float, c: float, beta: float, dxi: float, averaged: bool,
 
 
 @kernel_part
-def add_sampled(beta: float, dxi: float, w1: Array, w2: Array, begin: int, end: int, room: Array) -> None:
-    """Sums of samples, node by node for all lanes."""
+def add_sampled(beta: float, dxi: float, w1: Array, w2: Array, begin: int, rim: int, end: int, room: Array) -> None:
+    """Sums of samples, node by node for all lanes; no wet lane ends before `rim`."""
     scale = 1.0 / (math.pi * beta)
     for k in range(begin, end):
         xi, first, second = (k + 0.5) * dxi, w1[k], w2[k]
@@ -76,7 +76,11 @@ def add_sampled(beta: float, dxi: float, w1: Array, w2: Array, begin: int, end: 
             M = scale * math.sqrt(max(room[SQUARE + i] - w * w, 0.0))
             room[M1 + i] += first * M
             room[M2 + i] += second * M
-            room[LAST + i] = max(room[LAST + i], xi if M > 0.0 else -np.inf)
+    for k in range(rim, end):
+        xi = (k + 0.5) * dxi
+        for i in range(LANES):
+            w = xi - room[V + i]
+            room[LAST + i] = max(room[LAST + i], xi if room[SQUARE + i] - w * w > 0.0 else -np.inf)
 
 
 @kernel_part
@@ -97,9 +101,10 @@ def add_averages(beta: float, dxi: float, w1: Array, w2: Array, begin: int, end:
 
 @kernel_inner
 def add_lanes(
-    beta: float, dxi: float, averaged: bool, w1: Array, w2: Array, slowest: float, quickest: float, room: Array
-) -> None:
-    """Sums over xi > 0 of all lanes, in which M reaches from `slowest` to `quickest`."""
+    beta: float, dxi: float, averaged: bool, w1: Array, w2: Array, slowest: float, early: float, quickest: float,
+    room: Array,
+) -> None:  # fmt: skip
+    """Sums over xi > 0 of all lanes, in which M reaches from `slowest` on, to `early` at least, `quickest` at most."""
     half = w1.size
     begin = int(min(max(slowest / dxi - 1.0, 0.0), half))
     end = math.ceil(min(max(quickest / dxi + 1.0, 0.0), half))
@@ -108,7 +113,8 @@ def add_lanes(
     if averaged:
         add_averages(beta, dxi, w1, w2, begin, end, room)
     else:
-        add_sampled(beta, dxi, w1, w2, begin, end, room)
+        rim = max(int(min(max(early / dxi - 1.0, 0.0), half)), begin)
+        add_sampled(beta, dxi, w1, w2, begin, rim, end, room)
 
 
 @kernel
@@ -126,7 +132,7 @@ def sum_cells(
     top, reach = 0.0, 0.0
     for start in range(0, h.size, LANES):
         stop = min(start + LANES, h.size)
-        slowest, quickest = np.inf, -np.inf
+        slowest, late, early, quickest = np.inf, -np.inf, np.inf, -np.inf
         for i in range(LANES):
             here = start + i < stop
             room[H + i] = max(h[start + i], 0.0) if here else 0.0
@@ -136,15 +142,16 @@ def sum_cells(
             room[C + i] = math.sqrt(room[SQUARE + i])
         for i in range(LANES):
             c = room[C + i]
-            slowest = min(slowest, room[V + i] - c if room[H + i] > 0.0 else np.inf)
-            quickest = max(quickest, room[V + i] + c if room[H + i] > 0.0 else -np.inf)
+            if room[H + i] > 0.0:
+                slowest, late = min(slowest, room[V + i] - c), max(late, room[V + i] - c)
+                early, quickest = min(early, room[V + i] + c), max(quickest, room[V + i] + c)
         reach = max(reach, max(-slowest, quickest))
-        add_lanes(beta, dxi, averaged, w1, w2, slowest, quickest, room)
+        add_lanes(beta, dxi, averaged, w1, w2, slowest, early, quickest, room)
         for i in range(start, stop):
             sums[0, i], sums[1, i], high[i] = room[M1 + i - start], room[M2 + i - start], room[LAST + i - start]
         for i in range(LANES):
             room[V + i] = -room[V + i]
-        add_lanes(beta, dxi, averaged, w1, w2, -quickest, -slowest, room)
+        add_lanes(beta, dxi, averaged, w1, w2, -quickest, -late, -slowest, room)
         for i in range(start, stop):
             sums[2, i], sums[3, i], low[i] = 0.0 - room[M1 + i - start], room[M2 + i - start], -room[LAST + i - start]
             if low[i] == np.inf and high[i] > 0.0:
