@@ -27,7 +27,7 @@ ENOUGH = 0.1
 
 @dataclass(frozen=True)
 class Budget:
-    """Errors of one run, each L1(h) at the end over the mass at the start.
+    """Errors of one run, each L1(h) at the end over the mass at the start and what comes in.
 
     Attributes:
         total: To the judge.

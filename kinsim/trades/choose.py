@@ -35,7 +35,8 @@ class Chosen:
     Attributes:
         method: The method.
         accuracy: What was asked.
-        predicted: Its velocity error, at most: L1(h) to the closed-form twin at the end, over the mass at the start.
+        predicted: Its velocity error, at most: L1(h) to the closed-form twin at the end, over the mass at the start and
+            what comes in.
         share: Its cost per step over that of the dearest candidate, in which no cell sleeps.
         why: A sentence.
     """
@@ -78,7 +79,7 @@ def choose(
         scene: What happens.
         method: All but its velocity nodes is kept.
         clock: Its end is the end of the run.
-        accuracy: L1(h) to the closed-form twin at the end, over the mass at the start; > 0.
+        accuracy: L1(h) to the closed-form twin at the end, over the mass at the start and what comes in; > 0.
         grid: Take a velocity grid, which shows f, and no fitted nodes.
         among: Candidates of your own.
         options: `keep`, `resume`, `tell`, ... of `kinsim.study`.
