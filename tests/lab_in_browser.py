@@ -18,7 +18,8 @@ from playwright.sync_api import expect
 from kinsim import load_scene, simulate, step
 from kinsim.lab.play import Play
 from kinsim.lab.setup import Setup
-from kinsim.lab.view.widgets import PAUSE
+from kinsim.lab.view.painter import Painter
+from kinsim.lab.view.widgets import PAUSE, Widgets
 
 FIRST = 240_000
 """Milliseconds for what may have to compile kernels."""
@@ -309,6 +310,10 @@ def test_tabs_that_are_closed_while_they_play_are_no_event(chromium):
             expect(page.locator(".now")).to_contain_text("step 0", timeout=FIRST)
             press(page, "play")
             expect(page.locator(".now")).to_contain_text("pictures/s")
+            page.reload()
+            expect(page.locator(".now")).to_contain_text("step 0")
+            press(page, "play")
+            expect(page.locator(".now")).to_contain_text("pictures/s")
             page.close()
 
 
@@ -326,3 +331,47 @@ def test_the_shaded_faces_are_those_that_the_scheme_sums_up(page):
     for cells in held.values():
         difference, bound = (number(cell) for cell in cells[4:6])
         assert abs(difference) <= bound
+    for scheme, first in (("2  balanced, stopping", "balanced face (25)"), ("3  both, coupled", "upwind face (19)")):
+        page.locator(".knob-method-scheme select").select_option(label=scheme)
+        expect(options.first).to_have_text(first)
+        expect(page.locator(".faces select")).to_have_value(first)
+    expect(page.locator(".passing")).to_contain_text("Slow cells take the balanced face")
+    press(page, "one")
+    expect(page.locator(".passing")).to_contain_text("In this step the cell took the")
+
+
+def test_a_setting_that_cannot_be_made_is_not_played_as_another(page, tmp_path):
+    path = tmp_path / "large.toml"
+    path.write_text(Setup.of_scene("silo").turned("method.velocity.count", 10**8).toml(), encoding="utf-8")
+    page.locator(".load input").set_input_files(path)
+    expect(page.locator(".told .fault")).to_contain_text("bytes")
+    for name in ("play", "one", "next"):
+        expect(page.locator(f".{name} button")).to_be_disabled()
+    page.locator(".scene select").select_option("silo")
+    expect(page.locator(".play button")).to_be_enabled()
+    expect(page.locator(".told .fault")).to_have_count(0)
+
+
+@pytest.mark.filterwarnings("ignore::PendingDeprecationWarning")
+def test_colours_and_axes_grow_with_what_they_show():
+    """Two layers that collide are denser than both; an exact solution is faster than the run."""
+
+    def drawn(setup: Setup, steps: int) -> tuple[Play, Painter]:
+        play, painter = Play(setup.file), Painter(Widgets(["riemann"], "riemann", lambda: None))
+        painter.begin(play)
+        for _ in range(steps):
+            play.advance()
+            painter.show(play, "upwind", printed=False, words=True, rate=0.0)
+        return play, painter
+
+    riemann = Setup.of_scene("riemann").turned("cells.count", 60).turned("method.velocity.count", 32)
+    play, painter = drawn(riemann.turned("heap.velocities.0", 3).turned("heap.velocities.1", -3), 20)
+    play.stage = "projection"
+    peak = play.moment().f.max()
+    colours = painter.figures["density"].renderers[0].glyph.color_mapper
+    assert peak > 0.9  # at the start 0.71
+    assert peak <= colours.high < 2.0 * peak
+    assert f"{colours.high:.2g}, <b>" in painter._widgets.texts["scale"].object
+    play, painter = drawn(riemann.turned("method.scheme", 4).turned("heap.heights.1", 0), 40)
+    assert np.nanmax(play.moment().exact_u) > 1.05 * np.nanmax(play.moment().u)
+    assert painter.figures["velocity"].y_range.end >= np.nanmax(play.moment().exact_u)

@@ -24,7 +24,7 @@ from kinsim.lab.picture import image_of
 from kinsim.lab.play import STAGES, Play
 from kinsim.lab.prepare import make
 from kinsim.lab.setup import Setup
-from kinsim.lab.told import PUSHED, told
+from kinsim.lab.told import PUSHED, passing, told
 from kinsim.macroscopic.half_moments import half_moments_closed
 from kinsim.read import built_in
 from kinsim.watch.causes import STAGES as CAUSES
@@ -212,6 +212,30 @@ def test_the_faces_that_a_scheme_sums_up_come_first():
     for scheme, states in first.items():
         assert faces_of(Kinetic(scheme=scheme))[0] == states
     assert faces_of(Kinetic(scheme=4, order=2)) == faces_of(Kinetic(scheme=4, statics="reflect")) == FIRST_TWO
+
+
+@pytest.mark.parametrize("coupling", ["cell", "face"])
+def test_the_lab_says_which_face_a_cell_of_scheme_3_took(coupling):
+    play = make(setup_of("silo-incline", *SMALL, ("method.coupling", coupling)).file)
+    assert "a step tells" in passing(play, play.moment(), 20)
+    for _ in range(5):
+        play.advance()
+    before, moment = play.loop.stepper.now, play.moment()
+    shown = step(play.scene, play.method, before.h[1:-1].copy(), before.q.copy(), play.loop.dts[-1])
+    for cell in range(59):
+        slow = shown.slow[cell : cell + 2].all() if coupling == "face" else shown.slow[cell]
+        assert ("balanced" in passing(play, moment, cell)) == slow
+    assert 0 < shown.slow.sum() < 60
+
+
+def test_other_schemes_say_what_they_sum_up_where_no_choice_of_faces_does():
+    for turns, word in (
+        ((("method.scheme", 1),), ""), ((("method.scheme", 2),), ""), (METHODS["scheme 4"], ""),
+        (METHODS["scheme 4, order 2"], "slopes"), ((*METHODS["scheme 4"], ("method.statics", "reflect")), "turns"),
+    ):  # fmt: skip
+        play = Play(setup_of("silo", *SMALL, *turns).file)
+        assert word in passing(play, play.moment(), 20)
+        assert bool(word) == bool(passing(play, play.moment(), 20))
 
 
 def test_each_stage_and_each_force_has_its_sentence():

@@ -16,7 +16,7 @@ from ..kinetic.equilibrium import EQUILIBRIA
 from ..kinetic.velocity import Grid
 from ..local import at, varies
 from ..macroscopic.half_moments import half_moments_closed
-from ..method import Kinetic, Macroscopic
+from ..method import Kinetic
 from ..step import step
 from .play import Moment, Play
 
@@ -82,8 +82,8 @@ class Cut:
     halves: tuple[Half, ...]
 
 
-def faces_of(method: Kinetic | Macroscopic) -> tuple[FaceStates, ...]:
-    """Whose half-ranges can be looked at; those that the scheme itself sums up come first, where it has one kind."""
+def faces_of(method: Kinetic) -> tuple[FaceStates, ...]:
+    """Whose half-ranges can be looked at; those that the scheme itself sums up, or mostly does, come first."""
     if method.scheme == 4 and method.order == 1 and method.statics == "hold":
         return "held", "upwind", "balanced"
     return ("balanced", "upwind") if method.scheme == 2 else ("upwind", "balanced")

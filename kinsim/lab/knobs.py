@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from ..kinetic.equilibrium import EQUILIBRIA
 from ..kinetic.force import FORCES
-from ..method import Kinetic
 from ..model.chute import ConstantSlope
 from ..model.heap import Blocks, Parabola, Profile, Sine
 from ..read import SceneFile
@@ -93,7 +92,7 @@ def knobs_of(file: SceneFile) -> dict[str, list[Knob]]:
     scheme += [COUPLING] if method.scheme == 3 else [ORDER] if method.scheme == 4 else []
     ground: list[Knob] = [ZETA] if isinstance(file.chute, ConstantSlope) else []
     ground += [DELTA, EPSILON, *([BOUNDARY] if isinstance(file.boundary, str) else [])]
-    kinetic: list[Knob] = [NODES, EQUILIBRIUM, FORCE] if isinstance(method, Kinetic) else []
+    kinetic: list[Knob] = [NODES, EQUILIBRIUM, FORCE]
     grid: list[Knob] = [] if isinstance(file.heap, Profile) else [_cells(file)]
     return {"The mass": _of_heap(file), "The ground": ground, "The method": [*scheme, *kinetic],
             "Steps": [COURANT, *grid, END]}  # fmt: skip

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..method import Kinetic
-from .play import Moment
+from .play import Moment, Play
 
 START = "<b>Start.</b> The velocities in each cell are those of the equilibrium M(h, ξ - u), a semicircle, (12)."
 
@@ -23,8 +23,17 @@ PUSHED = {
 }
 
 PROJECTION = (
-    "<b>3 Projection.</b> Only mass and momentum of f are kept, (20); M of these is where the next step begins."
+    "<b>3 Projection.</b> Only the mass and the momentum that the step leaves in each cell are kept, (20); "
+    "M of these is where the next step begins."
 )
+
+OTHERWISE = {
+    "order": "Order 2 gives cells slopes, and sums up what those show to the wall; shaded is what means show.",
+    "reflect": "Scheme 4 with reflecting statics turns particles round at a face that friction holds; shaded is what "
+    "comes to it.",
+    "coupled": "Slow cells take the balanced face (25), others the upwind one (19): a step tells which this does.",
+}
+"""What a scheme sums up at a wall, where that is not simply one kind of face."""
 
 
 def told(moment: Moment, method: Kinetic, forced: bool) -> str:
@@ -34,3 +43,16 @@ def told(moment: Moment, method: Kinetic, forced: bool) -> str:
     if moment.stage == "force":
         return FORCE + (PUSHED[method.force] if forced else "here nothing does, and f stays as it is.")
     return TRANSPORT if moment.stage == "transport" else PROJECTION
+
+
+def passing(play: Play, moment: Moment, cell: int) -> str:
+    """What the scheme sums up at the right wall of a cell, if no choice of faces says so; a sentence or nothing."""
+    method = play.method
+    if method.order == 2 or (method.scheme == 4 and method.statics == "reflect"):
+        return OTHERWISE["order" if method.order == 2 else "reflect"]
+    if method.scheme != 3:
+        return ""
+    if not moment.step or moment.stage == "projection":
+        return OTHERWISE["coupled"]
+    slow = bool(play.loop.stepper.now.at_right[min(cell, moment.h.size - 2)])
+    return f"In this step the cell took {'the balanced face (25)' if slow else 'the upwind face (19)'} here."

@@ -20,6 +20,9 @@ BLUE, ORANGE, BLACK, SKY, AMBER, PINK, GREEN = (
 )  # fmt: skip
 """Okabe and Ito's colours for the colour-blind; dashes tell lines apart without colour."""
 
+ROOM = 1.15
+"""Of what outgrows the colours."""
+
 HISTORY = 4000
 """Rows of the ledger's curves that the page keeps."""
 
@@ -48,6 +51,11 @@ class Density:
         frame(self.figure, (cells.left, cells.right), (-bound, bound))
         self._mapper.high = 1.02 * peak_of(play, moment) or 1.0
 
+    @property
+    def top(self) -> float:
+        """The density of the brightest colour."""
+        return float(self._mapper.high)
+
     def show(self, play: Play, moment: Moment, cut: Cut) -> None:
         """Draw a moment."""
         grid, cells = play.density.grid, play.scene.cells
@@ -55,6 +63,8 @@ class Density:
         u = moment.u
         self._edges.data = {"x": play.scene.x, "low": u - c, "mean": u, "high": u + c}
         self.marker.location = cut.x
+        if (top := float(moment.f.max())) > self._mapper.high:
+            self._mapper.high = ROOM * top
         self._image.data = {
             "image": [image_of(moment, grid)], "x": [cells.left], "y": [-grid.bound],
             "dw": [cells.right - cells.left], "dh": [2.0 * grid.bound],
@@ -87,14 +97,12 @@ class Curve:
 
     def show(self, play: Play, moment: Moment, cut: Cut) -> None:
         """Draw a moment; the axis grows when it has to."""
-        own = self._own(moment)
-        exact = getattr(moment, f"exact_{self._name}")
-        self._source.data = {
-            "x": play.scene.x, "own": own, "twin": getattr(moment, f"twin_{self._name}"),
-            "exact": np.full_like(own, np.nan) if exact is None else exact,
-        }  # fmt: skip
+        own, twin = self._own(moment), getattr(moment, f"twin_{self._name}")
+        known = getattr(moment, f"exact_{self._name}")
+        exact = np.full_like(own, np.nan) if known is None else known
+        self._source.data = {"x": play.scene.x, "own": own, "twin": twin, "exact": exact}
         self.marker.location = cut.x
-        grow(self.figure, own)
+        grow(self.figure, own, twin, exact)
 
     def _own(self, moment: Moment) -> Array:
         values: Array = getattr(moment, self._name)

@@ -91,7 +91,7 @@ class Page:
         w.step.on_click(lambda event: self._by_hand(Play.advance))
         w.next_stage.on_click(lambda event: self._by_hand(Play.next_stage))
         w.over.on_click(lambda event: self.take(self._setup))
-        w.reset.on_click(lambda event: self.take(self._origin))
+        w.reset.on_click(lambda event: self._restart())
         self._doc.js_on_event(ConnectionLost, CustomJS(code='document.body.classList.add("lost")'))
         pn.state.on_session_destroyed(self._left)
 
@@ -102,7 +102,7 @@ class Page:
             return
         with unlocked():
             rate = self._pace.rate if w.play.value else 0.0
-            self._painter.show(play, w.faces.value, w.printed.value, not w.play.value, rate)
+            self._painter.show(play, w.states, w.printed.value, not w.play.value, rate)
             self._pace.send()
 
     def _prepare(self) -> None:
@@ -133,7 +133,7 @@ class Page:
         try:
             play = made.result()
         except (InputError, MemoryError) as error:
-            self._fault(error)
+            self._refuse(error)
             return
         if COMPILING in self._painter.said:
             self._painter.say(" ".join(setup.notes))
@@ -222,6 +222,10 @@ class Page:
         except InputError as error:
             self._fault(error)
             return
+        self._restart()
+
+    def _restart(self) -> None:
+        """As the scene or the file says, and cut where it is steepest."""
         self._painter.forget()
         self.take(self._origin)
 
@@ -243,6 +247,14 @@ class Page:
 
     def _fault(self, error: Exception) -> None:
         self._painter.say(str(error) or "not enough memory; take fewer cells or velocity nodes", "fault")
+
+    def _refuse(self, error: Exception) -> None:
+        """Keep the last run on the page, but not as that of a setting that could not be made."""
+        self._halt()
+        for widget in self._widgets.runs:
+            widget.disabled = True
+        self._asked = []
+        self._fault(error)
 
     def _left(self, context: Any) -> None:
         """The tab is gone, and with it all that it showed."""

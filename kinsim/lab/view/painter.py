@@ -8,9 +8,9 @@ from typing import Any
 
 from ..books import Ledger
 from ..cut import Cut, FaceStates, cut_at
-from ..picture import peak_of, steepest
+from ..picture import steepest
 from ..play import Moment, Play
-from ..told import told
+from ..told import passing, told
 from .charts import Curve, Density, History, Slice
 from .tables import ledger_table, minus, moments_table
 from .widgets import Widgets
@@ -46,8 +46,6 @@ class Painter:
         self._cell = steepest(moment) if self._place is None else _cell_at(play, self._place)
         for chart in self._charts.values():
             chart.begin(play, moment)
-        top = f"{peak_of(play, moment):.2g}"
-        self._write("scale", f'<span class="bar">0 <i></i> {top}, <b>orange</b> where f &lt; 0</span>')
 
     def choose(self, play: Play, x: float) -> None:
         """Cut at a place, in this run and in those that come."""
@@ -77,7 +75,11 @@ class Painter:
     def _tell(self, play: Play, moment: Moment, cut: Cut, printed: bool, rate: float) -> None:
         books = self._ledger.books()
         self._history.show(moment, books)
+        self._write(
+            "scale", f'<span class="bar">0 <i></i> {self._density.top:.2g}, <b>orange</b> where f &lt; 0</span>'
+        )
         self._write("moments", moments_table(cut, printed))
+        self._write("passing", f'<p class="note">{passing(play, moment, cut.cell)}</p>')
         self._write("books", ledger_table(books, moment.stage if moment.step else None))
         places = minus(f"Cut at x = {cut.x:.3g}, and its wall at {cut.face_x:.3g}")
         self._write("cut-title", f"<h2>{places} <small>click above for another cell</small></h2>")

@@ -49,7 +49,7 @@ class Widgets:
         )
         self.faces = pn.widgets.Select(width=170, margin=(0, 6), css_classes=["faces"])
         self.where = text("where", margin=(0, 8), sizing_mode="fixed", width=236, height=24)
-        names = ("told", "stage-told", "moments", "books", "cut-title", "scale")
+        names = ("told", "stage-told", "moments", "passing", "books", "cut-title", "scale")
         self.texts = {name: text(name) for name in names}
 
     @property
@@ -59,9 +59,14 @@ class Widgets:
 
     def offer(self, faces: Sequence[FaceStates]) -> None:
         """Let these faces be chosen; where others can be than so far, the first is."""
-        options: dict[str, FaceStates] = {FACES[states]: states for states in faces}
-        if options != self.faces.options:
-            self.faces.param.update(options=options, value=faces[0])
+        labels = [FACES[states] for states in faces]
+        if labels != self.faces.options:
+            self.faces.param.update(options=labels, value=labels[0])
+
+    @property
+    def states(self) -> FaceStates:
+        """Those of the faces that are chosen."""
+        return next(states for states, label in FACES.items() if label == self.faces.value)
 
     def template(self, knobs: Any, charts: Mapping[str, Any]) -> Any:
         """The page with all its parts in place."""
