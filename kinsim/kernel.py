@@ -53,13 +53,19 @@ _load_without_blas()
 
 @cache
 def source_stamp() -> str:
-    """A hash of every source file of the package that holds kernels."""
+    """A hash of every source file of the package that holds kernels or numbers that they freeze."""
     digest = hashlib.sha256(numba.__version__.encode())
-    for path in sorted(PACKAGE.rglob("*.py")):
-        text = path.read_bytes()
-        if b"@kernel" in text:
-            digest.update(path.relative_to(PACKAGE).as_posix().encode() + b"\0" + text)
+    for path in stamped():
+        digest.update(path.relative_to(PACKAGE).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
+
+
+def stamped() -> list[Path]:
+    """The source files that hold kernels, and those beside them in a folder of the package."""
+    files = sorted(PACKAGE.rglob("*.py"))
+    holding = {path for path in files if b"@kernel" in path.read_bytes()}
+    folders = {path.parent for path in holding} - {PACKAGE}
+    return [path for path in files if path in holding or path.parent in folders]
 
 
 @cache

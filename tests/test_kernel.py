@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import shutil
 import stat
@@ -10,6 +11,7 @@ import sys
 from pathlib import Path
 
 import kinsim
+from kinsim.kernel import stamped
 
 PACKAGE = Path(kinsim.__file__).parent
 
@@ -106,6 +108,22 @@ print(b.__file__, b.borrowed(0.5), sum(b.borrowed.stats.cache_hits.values()))
     assert float(python(code, tmp_path / "cache", source).split()[1]) == 2 * float(first[1])
     helper.write_text(text)
     assert python(code, tmp_path / "cache", source).split()[1] == first[1]
+
+
+def test_all_numbers_that_kernels_freeze_are_stamped() -> None:
+    """What a file with kernels imports in capitals stands in a file whose edits make the compiler start anew."""
+    known, frozen = set(stamped()), 0
+    for path in known:
+        if b"@kernel" not in path.read_bytes():
+            continue
+        for taken in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(taken, ast.ImportFrom) and any(name.name.isupper() for name in taken.names):
+                home = PACKAGE.joinpath(*path.relative_to(PACKAGE).parts[: -taken.level], *taken.module.split("."))
+                if home.parent == PACKAGE.parent or not taken.level:
+                    continue
+                frozen += 1
+                assert home.with_suffix(".py") in known, f"{path}: {ast.unparse(taken)}"
+    assert frozen >= 3
 
 
 def test_two_copies_of_the_package_do_not_share_code(tmp_path: Path) -> None:

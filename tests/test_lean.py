@@ -9,12 +9,13 @@ import pytest
 from states import random_states, scene_with
 from test_sleep import heaps
 
-from kinsim import Courant, Dump, Fixed, Kinetic, Run, Scene, Uniform, Window, simulate
+from kinsim import Courant, Dump, Fixed, InputError, Kinetic, Run, Scene, Uniform, Window, simulate
 from kinsim.clock import AnyClock
 from kinsim.kinetic import choice
 from kinsim.kinetic.lean import OnDemand
+from kinsim.kinetic.occupied import LANES, sum_cells
 from kinsim.kinetic.wing import Density
-from kinsim.stepper import make_stepper
+from kinsim.stepper import Stepper, make_stepper
 
 METHODS = {
     f"scheme {scheme}, {equilibrium}": Kinetic(scheme, Uniform(32), equilibrium)
@@ -100,6 +101,45 @@ def test_a_run_beyond_the_bound(name: str, monkeypatch: pytest.MonkeyPatch) -> N
     method = replace(METHODS[name], velocity=Uniform(32, 3.0))
     run = is_the_stored_one(monkeypatch, patchy("flat", "wall"), method, Fixed(0.03, 20), force=True)
     assert run.entries["f_min"].min() < 0
+
+
+@pytest.mark.parametrize("bound", [0.4, 0.7])
+@pytest.mark.parametrize("name", METHODS)
+def test_a_run_whose_cells_are_all_faster_than_the_window(
+    name: str, bound: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """M of neither of two neighbours ends in the window: its last node is still seen, and judged by the CFL bound."""
+    method = replace(METHODS[name], velocity=Uniform(16, bound, beyond="warn"))
+    deep = np.arange(64) < 31
+    scene = scene_with(np.where(deep, 1.0, 0.01), np.where(deep, 0.3, 0.0), zeta=0.1, delta=0.2, boundary="wall")
+    assert is_the_stored_one(monkeypatch, scene, method, Courant(0.9, 0.1)).entries["courant"].max() > 0.2
+    layer = scene_with(np.ones(40), zeta=0.3, delta=0.1)
+    with pytest.raises(InputError, match="CFL"):
+        simulate(layer, method, Fixed(0.2, 5))
+
+
+@pytest.mark.parametrize("scheme", [1, 4])
+@pytest.mark.parametrize("h", [1e-20, 1e-34, 1e-300])
+def test_films_too_thin_for_their_speed_to_vary(scheme: int, h: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """u + c is u, at the edge of a velocity cell: half of M stands on either side of it, and what flows is h u."""
+    scene, method = scene_with(np.full(4, h), np.full(4, 1.0), delta=0.2), Kinetic(scheme, Uniform(16, 2.0))
+    made = make_stepper(scene, method)
+    with monkeypatch.context() as patch:
+        patch.setattr(choice, "may_forget", lambda method, scheme: False)
+        stored = Stepper(scene, method)
+    for stepper in (made, stored):
+        assert stepper.begin(*scene.initial()) > 1.0
+        stepper.advance(1e-3)
+        np.testing.assert_allclose(stepper.now.F1[1:-1], h, rtol=1e-14)
+    np.testing.assert_array_equal(made.now.F1, stored.now.F1)
+
+
+def test_a_film_whose_energy_is_zero_has_a_first_node() -> None:
+    """2 beta h is 0 in floating point while h is not."""
+    h, u, weights = np.array([0.0, 5e-324, 0.0]), np.array([0.0, 1.0, 0.0]), np.ones(8)
+    low, high = np.zeros((2, 3))
+    sum_cells(h, u, 0.2, 0.5, True, weights, weights, np.zeros(8 * LANES), np.zeros((4, 3)), low, high)
+    assert low[1] <= high[1]
 
 
 @pytest.mark.parametrize("name", METHODS)

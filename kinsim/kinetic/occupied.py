@@ -48,7 +48,7 @@ def sum_side(side: Array, begin: int, end: int, w1: Array, w2: Array) -> tuple[f
 @kernel_inner
 def first_node(h: float, u: float, beta: float, dxi: float, averaged: bool) -> float:
     """The first node at which M(h, xi - u) is not zero where all of it stands on xi > 0."""
-    c = math.sqrt(2.0 * beta * h)
+    c = max(math.sqrt(2.0 * beta * h), TINY)
     k = max(math.floor((u - c) / dxi - 1.0), 0)
     while empty(h, u, c, beta, dxi, averaged, k):
         k += 1
@@ -113,7 +113,7 @@ def add_lanes(
     if averaged:
         add_averages(beta, dxi, w1, w2, begin, end, room)
     else:
-        rim = max(int(min(max(early / dxi - 1.0, 0.0), half)), begin)
+        rim = max(int(min(max(early / dxi - 1.0, 0.0), half - 1.0)), begin)  # past the window, the last node tells
         add_sampled(beta, dxi, w1, w2, begin, rim, end, room)
 
 

@@ -114,8 +114,8 @@ def average_inside(h: float, u: float, beta: float, dxi: float, side: Array) -> 
     """The same from the first cell that M reaches to the last; returns these, last + 1, and leaves out the others."""
     half = side.size
     c = math.sqrt(2.0 * beta * max(h, 0.0))
-    begin = int(min(max((u - c) / dxi, 0.0), half))
-    end = math.ceil(min(max((u + c) / dxi, 0.0), half)) if c > 0.0 else begin
+    begin = int(min(max((u - c) / dxi - 1.0, 0.0), half))  # for u - c may be u, at the edge of a velocity cell
+    end = math.ceil(min(max((u + c) / dxi + 1.0, 0.0), half)) if c > 0.0 else begin
     inside = side[begin:end]
     for k in range(inside.size):
         inside[k] = antiderivative(((begin + k + 1) * dxi - u) / c)
