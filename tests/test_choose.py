@@ -31,6 +31,7 @@ from kinsim import (
     trade,
 )  # fmt: skip
 from kinsim.cli import app
+from kinsim.trades import budget as budgeting
 from kinsim.trades import choose as choosing
 from kinsim.trades.choose import candidates, velocity_error
 from kinsim.trades.cost import Cost
@@ -272,6 +273,40 @@ def test_a_budget_adds_what_separate_runs_say() -> None:
     told = CliRunner().invoke(app, ["budget", "silo", "--set", "cells.count=40", "--set", "clock.steps=50"])
     assert told.exit_code == 0, told.output
     assert "of the dx error" in " ".join(told.stdout.split())
+
+
+@pytest.mark.parametrize(("dearer", "told"), [(1.0, "8 nodes would do for less than 10 percent, 4 times faster."),
+                                              (-1.0, "Fewer nodes would not be faster."),
+                                              (0.0, "Fewer nodes would not be faster.")])  # fmt: skip
+def test_only_what_is_faster_is_advised(monkeypatch: pytest.MonkeyPatch, dearer: float, told: str) -> None:
+    def costs(scene: Scene, methods: list[Kinetic], **options: object) -> list[Cost]:
+        return [Cost((one.velocity.count / 32.0) ** dearer, 0.0) for one in methods]  # type: ignore[union-attr]
+
+    monkeypatch.setattr(budgeting, "seconds_per_step", costs)
+    assert budget(SILO, Kinetic(velocity=Uniform(32)), Fixed(0.02, 50)).advice == told
+
+
+def test_too_few_nodes_are_told_how_many_would_do() -> None:
+    few = budget(SILO, Kinetic(velocity=Uniform(8), equilibrium="sampled"), Fixed(0.02, 50))
+    assert few.velocity > 0.1 * few.dx
+    count = int(few.advice.split()[0])
+    assert count > 8
+    assert f"{count} nodes would do for less than 10 percent" in few.advice
+    enough = budget(SILO, Kinetic(velocity=Uniform(count), equilibrium="sampled"), Fixed(0.02, 50))
+    assert enough.velocity < 0.1 * enough.dx
+
+
+@pytest.mark.parametrize("scheme", [1, 2, 3])
+def test_no_nodes_are_advised_where_no_pilot_tells_the_error(scheme: int) -> None:
+    found = budget(SILO, Kinetic(scheme, Uniform(32)), Fixed(0.005, 20))
+    assert f"scheme {scheme} amplifies any rounding" in found.words
+    assert "would do for" not in found.words
+
+
+def test_a_change_that_no_printed_digit_shows_is_none() -> None:
+    found = budget(SILO, Macroscopic(), Fixed(0.02, 20))
+    assert "change nothing" in replace(found, closed=0.15201, shorter=0.15199).words
+    assert "make the whole smaller, 0.151 for 0.152" in replace(found, closed=0.152, shorter=0.151).words
 
 
 def test_advice_names_what_a_scene_needs() -> None:
