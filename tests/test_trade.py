@@ -25,6 +25,7 @@ from kinsim import (
     trade,
 )  # fmt: skip
 from kinsim.cli import app
+from kinsim.plot.trade import draw_trade
 from kinsim.studies import engine, record
 from kinsim.studies.member import Member
 from kinsim.trades.family import lines
@@ -97,6 +98,19 @@ def test_the_knee_is_the_corner() -> None:
     cost, error = np.array([1.0, 2.0, 4.0, 8.0, 16.0]), np.array([1.0, 0.1, 0.01, 0.009, 0.008])
     assert knee(cost, error, pareto(cost, error)) == 2
     assert knee(cost[:2], error[:2], [0, 1]) is None
+
+
+def test_a_picture_without_velocity_errors_says_so() -> None:
+    silo, _, _ = load_scene("silo")
+    scene, clock = replace(silo, cells=replace(silo.cells, count=24)), Fixed(1e-4, 2)
+    twins = [Choice("sampled", Macroscopic()), Choice("closed form", Macroscopic())]
+    for family in (twins, twins[:1]):
+        _, nodes = draw_trade(trade(scene, Kinetic(), clock, family=family, repeats=1)).axes
+        assert "no velocity errors" in [text.get_text() for text in nodes.texts]
+    one = trade(RIEMANN, Kinetic(), Courant(0.9, 0.2), family=FAMILY[:3], repeats=1)
+    words = draw_trade(one).axes[1].get_legend_handles_labels()[1]
+    assert "fitted nodes" in words  # of one number of nodes no order is told
+    assert not any("geometric" in told for told in words)
 
 
 def test_lines_hold_what_the_scheme_can() -> None:

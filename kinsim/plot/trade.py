@@ -70,7 +70,11 @@ def _costs(measured: xarray.Dataset, axes: Any) -> None:
         axes.scatter(time[one], error[one], s=260, facecolors="none", edgecolors="black", linewidths=1.6, zorder=4)
         axes.scatter([], [], s=90, facecolors="none", edgecolors="black", linewidths=1.6,
                      label=f"knee: {_short(measured.isel(member=one))}")  # fmt: skip
-    axes.set(xscale="log", yscale="log", xlabel="wall time of the run in s, median and range")
+    axes.set_xlabel("wall time of the run in s, median and range")
+    if (error > 0.0).any():
+        axes.set(xscale="log", yscale="log")
+    else:
+        _nothing(axes, "no total errors")
     axes.set_ylabel("total error: L1(h) at the end / mass")
     axes.set_title(f"error against cost; judged by {measured.attrs['judge']}", loc="left", fontsize=10)
     axes.legend(fontsize=8, frameon=False)
@@ -78,11 +82,13 @@ def _costs(measured: xarray.Dataset, axes: Any) -> None:
 
 def _nodes(measured: xarray.Dataset, axes: Any) -> None:
     line = measured["line"].to_numpy()
-    closed = measured["total_error"].to_numpy()[line == "closed form"]
+    total = measured["total_error"].to_numpy()
+    closed, drawn = total[(line == "closed form") & (total > 0.0)], False
     for name in ("cell average", "sampled", "fitted"):
-        of = measured.isel(member=np.flatnonzero(line == name)).dropna("member", subset=["velocity_error"])
+        of = measured.isel(member=np.flatnonzero((line == name) & (measured["velocity_error"].to_numpy() > 0.0)))
         if not of.sizes["member"]:
             continue
+        drawn = True
         colour, mark, _ = LOOKS[name]
         n, error = of["nodes"].to_numpy(), of["velocity_error"].to_numpy()
         axes.plot(n, error, marker=mark, markersize=5, color=colour, label=f"{_words(name)}{_order(name, n, error)}")
@@ -96,20 +102,38 @@ def _nodes(measured: xarray.Dataset, axes: Any) -> None:
         axes.axhline(closed[0], color="black", linewidth=1)
         axes.annotate("error of dx and dt (closed form)", (0.01, closed[0]), (0, 4), xycoords=("axes fraction", "data"),
                       textcoords="offset points", fontsize=8.5)  # fmt: skip
-    axes.set_xscale("log", base=2)
-    axes.set_yscale("log")
     axes.set_xlabel("velocity nodes n")
     axes.set_ylabel("velocity error: L1(h) to the closed-form twin / mass")
     axes.set_title("what velocity nodes add", loc="left", fontsize=10)
-    axes.scatter([], [], s=90, facecolors="none", edgecolors="#777777", label="a tenth of dx and dt: more pay no more")
-    axes.plot([], [], ":", color="#777777", label="orders of the fluxes")
+    if closed.size or drawn:
+        axes.set_yscale("log")
+    if not drawn:
+        _nothing(axes, "no velocity errors")
+        axes.set_xticks([])
+        if not closed.size:
+            axes.set_yticks([])
+        return
+    axes.set_xscale("log", base=2)
+    if closed.size:
+        axes.scatter(
+            [], [], s=90, facecolors="none", edgecolors="#777777", label="a tenth of dx and dt: more pay no more"
+        )
+    if set(ORDERS) & set(line.tolist()):
+        axes.plot([], [], ":", color="#777777", label="orders of the fluxes")
     axes.xaxis.set_major_formatter("{x:g}")
     axes.legend(fontsize=8, frameon=False)
 
 
+def _nothing(axes: Any, words: str) -> None:
+    """A panel without points says so."""
+    axes.text(0.5, 0.5, words, transform=axes.transAxes, ha="center", va="center", color="#777777")
+
+
 def _order(name: str, n: np.ndarray, error: np.ndarray) -> str:
     """The order that was measured, beside that of the fluxes."""
-    if name not in ORDERS or n.size < 2:
+    if n.size < 2:
+        return ""
+    if name not in ORDERS:
         return ": geometric"
     slope = np.polyfit(np.log(n), np.log(error), 1)[0]
     return f": n^{slope:.2f}, fluxes n^{ORDERS[name]:g}"
