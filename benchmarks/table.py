@@ -17,7 +17,6 @@ from pathlib import Path
 import fluxes
 import grid
 import growth
-import required
 import shell
 import studies
 import where
@@ -40,7 +39,6 @@ def main() -> None:
     for rows in (
         grid.rows(asked.quick),
         fluxes.rows(asked.quick),
-        required.rows(asked.quick),
         growth.rows(asked.quick),
         shell.rows(asked.quick),
         studies.rows(asked.quick),

@@ -128,7 +128,7 @@ def _cheapest(
     """The one of least cost that will do; `ordered` by the cost of a step in which no cell sleeps.
 
     What would be dearer even if as many of its cells slept as ever did is left out, and so is at first what the order
-    of its kind rules out; where a dearer one will do, that is looked at after all.
+    of its kind rules out; that is looked at after all from the most nodes of its kind on, as long as these will do.
     """
     best, passed = None, []
 
@@ -145,11 +145,14 @@ def _cheapest(
             passed.append(one)
         elif better(one):
             best = one
-    for one in reversed(passed if best is not None else []):
+    lost = set()
+    for one in reversed(passed):
+        if kind_of(one) in lost:
+            continue
         if better(one):
             best = one
-        elif pilots.predicted(one) > accuracy:
-            break
+        elif accuracy < pilots.predicted(one) < math.inf:  # of one that stopped, fewer nodes may come to the end
+            lost.add(kind_of(one))
     return best
 
 
