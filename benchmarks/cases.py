@@ -8,9 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinsim import Cells, ConstantSlope, Coulomb, Kinetic, Macroscopic, Profile, Scene, Uniform
+from kinsim import Cells, ConstantSlope, Coulomb, Fitted, Kinetic, Macroscopic, Profile, Scene, Uniform
+from kinsim.kinetic.equilibrium import EQUILIBRIA
+from kinsim.kinetic.force import FORCES
+from kinsim.kinetic.wing import Density
 from kinsim.method import SchemeNumber
-from kinsim.stepper import make_stepper
+from kinsim.stepper import Stepper, make_stepper
 
 Array = NDArray[np.float64]
 Call = Callable[[], object]
@@ -52,10 +55,15 @@ class Case:
 class Step:
     """One step of kinsim from the state of a case, as its time loop takes it."""
 
+    stepper: Stepper
+
     def __init__(self, case: Case, method: Kinetic | Macroscopic) -> None:
-        self._case = case
-        self.stepper = make_stepper(case.scene, method)
+        self._case, self.method = case, method
+        self.stepper = self._make()
         self()
+
+    def _make(self) -> Stepper:
+        return make_stepper(self._case.scene, self.method)
 
     def __call__(self) -> None:
         case = self._case
@@ -66,6 +74,22 @@ class Step:
         """h and q at level n + 1, and f where it is kept."""
         now, density = self.stepper.now, self.stepper.density
         return [now.h1.copy(), now.q1.copy()] + ([density.f.copy()] if density else [])
+
+    def of_rooms(self) -> list[Array]:
+        """The same by the rooms, which define the step."""
+        return Rooms(self._case, self.method).result()
+
+
+class Rooms(Step):
+    """The same, stage by stage, where f is stored: what every faster path has to give."""
+
+    def _make(self) -> Stepper:
+        scene, method = self._case.scene, self.method
+        stepper = Stepper(scene, method)
+        if stepper.density and isinstance(method, Kinetic) and not isinstance(method.velocity, Fitted):
+            how = EQUILIBRIA[method.equilibrium], FORCES[method.force]
+            stepper.wing = stepper.density = Density(scene, method.velocity, *how, stepper.scheme)
+        return stepper
 
 
 class Looked(Step):

@@ -17,6 +17,7 @@ from pathlib import Path
 import fluxes
 import grid
 import growth
+import required
 import shell
 import studies
 import where
@@ -39,6 +40,7 @@ def main() -> None:
     for rows in (
         grid.rows(asked.quick),
         fluxes.rows(asked.quick),
+        required.rows(asked.quick),
         growth.rows(asked.quick),
         shell.rows(asked.quick),
         studies.rows(asked.quick),

@@ -55,14 +55,15 @@ def _once(call: Call, repeats: int) -> float:
     return (time.thread_time() - began) / repeats
 
 
-def same(what: str, ours: list[Array], theirs: list[Array], within: float = 1e-12) -> float:
-    """The largest difference in units of the largest entry; complains where two contenders do not agree."""
-    worst = 0.0
-    for a, b in zip(ours, theirs, strict=True):
-        worst = max(worst, float(np.max(np.abs(a - b))) / max(float(np.max(np.abs(b))), 1.0))
-    if not worst <= within:
-        raise AssertionError(f"{what}: the results differ by {worst:.1e}; timing them would mean nothing")
-    return worst
+def same(what: str, ours: list[Array], theirs: list[Array], within: float = 1e-12) -> None:
+    """Complains where entries of h, q or f differ by more than `within` of the largest one of theirs."""
+    for name, a, b in zip("hqf"[: len(theirs)], ours, theirs, strict=True):
+        if a.shape != b.shape:
+            raise AssertionError(f"{what}: {name} is of shape {a.shape} here and {b.shape} there")
+        apart, largest = float(np.max(np.abs(a - b))), float(np.max(np.abs(b)))
+        if not apart <= within * largest:
+            differ = f"{name} differs by {apart:.1e} where it goes up to {largest:.1e}"
+            raise AssertionError(f"{what}: {differ}; timing them would mean nothing")
 
 
 def exponent(sizes: list[int], seconds: list[float]) -> float:
