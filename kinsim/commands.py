@@ -41,7 +41,7 @@ def sweep(
     """
     from .overview import saved_every
     from .progress import Watched
-    from .report_many import study_report
+    from .report_many import study_faults, study_report
     from .studies.file import check_study_file, write_study
     from .studies.study import study
     from .studies.vary import read_over
@@ -67,7 +67,10 @@ def sweep(
             tell=progress.tell,
         )
         write_study(found, out)
-    if not quiet:
+    if quiet:
+        for line in study_faults(found):
+            typer.echo(line, err=True)
+    else:
         study_report(found, out)
     raise typer.Exit(max(EXIT_CODES.get(kind, 1) for kind in found["verdict_kind"].to_numpy().ravel().tolist()))
 

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.markup import escape
 
 from .overview import plain_table
+from .shell import EXIT_CODES
 
 if TYPE_CHECKING:
     import xarray
@@ -39,6 +40,16 @@ def study_report(found: xarray.Dataset, out: Path) -> None:
     more = found["verdict"].size - SHOWN
     told = f"and {more} more; " if more > 0 else ""
     console.print(f"{told}study: written to {escape(str(out))}", highlight=False, soft_wrap=True)
+
+
+def study_faults(found: xarray.Dataset) -> list[str]:
+    """A line for each kind of end that is a fault, with the first of its verdicts."""
+    kinds, told = (found[name].to_numpy().ravel().tolist() for name in ("verdict_kind", "verdict"))
+    return [
+        f"{kinds.count(kind)} of {len(kinds)} members ended {kind}: {told[kinds.index(kind)]}"
+        for kind in dict.fromkeys(kinds)
+        if EXIT_CODES.get(kind, 1)
+    ]
 
 
 def trade_report(measured: xarray.Dataset, files: list[Path]) -> None:

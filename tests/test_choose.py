@@ -22,6 +22,7 @@ from kinsim import (
     Profile,
     Scene,
     Uniform,
+    Window,
     advise,
     budget,
     choose,
@@ -186,6 +187,33 @@ def test_what_cannot_be_had_is_refused_with_the_nearest() -> None:
         choose(SILO, Kinetic(), CLOCK, accuracy=1e-3, among=[])
     with pytest.raises(InputError, match="none is there and none comes"):
         choose(replace(SILO, heap=Blocks((), (0.0,))), Kinetic(), CLOCK, accuracy=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("among", "line"),
+    [
+        ([Kinetic(), Macroscopic()], r"among\[1\] is Macroscopic"),
+        ([Kinetic(velocity=Window(0.3), equilibrium="sampled")], r"among\[0\] is .*; give Kinetic methods with"),
+        ([Kinetic(1)], r"among\[0\] has another closed form"),
+        ([Kinetic(order=2)], r"among\[0\] has another closed form"),
+        (Kinetic(), "among is a Kinetic; give a list"),
+    ],
+)
+def test_candidates_of_ones_own_share_the_twin(among: object, line: str) -> None:
+    with pytest.raises(InputError, match=line):
+        choose(SILO, Kinetic(), CLOCK, accuracy=1e-3, among=among)  # type: ignore[arg-type]
+
+
+def test_arguments_of_a_choice() -> None:
+    with pytest.raises(InputError, match="choose: scene is a str; give a"):
+        choose("silo", Kinetic(), CLOCK, accuracy=1e-3)  # type: ignore[arg-type]
+    for what in (budget, trade):
+        with pytest.raises(InputError, match=rf"{what.__name__}: clock is a float; give a?"):
+            what(SILO, Kinetic(), 0.1)  # type: ignore[operator]
+    with pytest.raises(TypeError, match="unexpected keyword argument 'acuracy'"):
+        choose(SILO, Kinetic(), CLOCK, accuracy=1e-3, acuracy=1)
+    chosen = choose(SILO, Kinetic(), CLOCK, accuracy=np.float32(1e-3), among=[Kinetic()])  # type: ignore[arg-type]
+    assert type(chosen.accuracy) is float
 
 
 def test_candidates_keep_the_rest_of_the_method() -> None:

@@ -145,12 +145,48 @@ def test_a_run_that_was_interrupted_is_not_kept(tmp_path: Path, monkeypatch: pyt
         ({"over": OVER, "workers": -1}, "workers = -1"),
         ({"over": OVER, "workers": 1, "scheduler": "tcp://127.0.0.1:1"}, "leave out"),
         ({"over": OVER, "keep": "/dev/null/kept"}, "no folder can be made there"),
+        ({"over": OVER, "keep": 3}, "keep = 3 names no folder"),
+        ({"over": OVER, "resume": True}, "none is named; write keep="),
+        ({"over": OVER, "repeats": 1.5}, "repeats = 1.5 is no whole number"),
+        ({"over": OVER, "fields": 3}, "fields = 3 is no list of names"),
+        ({"over": OVER, "fields": "hight"}, "no field 'hight'"),
+        ({"over": {3: [1]}}, "over 3: is no key"),
+        ({"over": {"chute.zeta": np.array(0.1)}}, "over chute.zeta: should be a list"),
+        ({"over": {"chute.zeta": range(2000), "clock.dt": range(2000)}}, "4000000 members are more .* at most 1000000"),
     ],
 )
 def test_bad_requests_get_one_line(options: dict[str, object], line: str) -> None:
     with pytest.raises(InputError, match=line) as told:
         study(SCENE, Macroscopic(), CLOCK, **options)
     assert "\n" not in str(told.value)
+
+
+def test_what_is_no_scene_is_refused() -> None:
+    for given in (("silo", Macroscopic(), CLOCK), (SCENE, "kinetic", CLOCK), (SCENE, Macroscopic(), 0.1)):
+        with pytest.raises(InputError, match=r"study: (scene|method|clock) is a (str|float); give "):
+            study(*given, OVER)  # type: ignore[arg-type]
+
+
+def test_one_field_and_a_kept_file_without_a_verdict(tmp_path: Path) -> None:
+    found = study(SCENE, Macroscopic(), CLOCK, OVER, fields="mass", keep=tmp_path)
+    assert "history_mass" in found
+    file = next(tmp_path.iterdir())
+    np.savez(file, figures=np.array("{}"))
+    again = study(SCENE, Macroscopic(), CLOCK, OVER, fields="mass", keep=tmp_path, resume=True)
+    np.testing.assert_array_equal(again["h"], found["h"])
+
+
+def test_a_quiet_sweep_tells_its_faults(tmp_path: Path) -> None:
+    words = ["sweep", "riemann", "--set", "cells.count=20", "--set", "clock.steps=2", "--quiet",
+             "--over", "cells.count=20,-1,-2", "--out", str(tmp_path / "s.nc")]  # fmt: skip
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code
+    assert done.stdout == ""
+    assert done.stderr.startswith("2 of 3 members ended refused: ")
+    assert done.stderr.count("\n") == 1
+    many = CliRunner().invoke(app, [*words, "--over", "chute.zeta=0:1:1000000000"])
+    assert "1000000000 values are more than a table in memory holds; take at most 1000000" in many.stderr
+    assert many.stderr.count("\n") == 1
 
 
 def test_lists_from_the_command_line() -> None:

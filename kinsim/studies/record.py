@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import time
 import tracemalloc
 import zipfile
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -87,12 +89,15 @@ def record_of(run: Run, fields: tuple[str, ...]) -> Record:
     return Record(figures, arrays)
 
 
-def check_fields(fields: tuple[str, ...]) -> tuple[str, ...]:
-    """`fields`, if each is known.
+def check_fields(fields: Sequence[str] | str) -> tuple[str, ...]:
+    """`fields`, or the one, if each is known.
 
     Raises:
-        InputError: One is not.
+        InputError: One is not, or they are no names.
     """
+    if not isinstance(fields, (Sequence, np.ndarray)):
+        raise InputError(f"study: fields = {fields!r} is no list of names; write fields=['mass'], for example")
+    fields = (fields,) if isinstance(fields, str) else tuple(fields)
     known = ("h", "q", "u", *EVERY_COLUMN)
     for name in fields:
         if name not in known:
@@ -135,8 +140,9 @@ class Folder:
         try:
             with np.load(file, allow_pickle=False) as kept:
                 arrays = {name: kept[name] for name in kept.files}
-            return Record(json.loads(str(arrays.pop("figures"))), arrays)
-        except (OSError, ValueError, KeyError, zipfile.BadZipFile):
+            figures = json.loads(str(arrays.pop("figures")))
+            return Record(figures, arrays) if {"verdict", "verdict_kind"} <= set(figures) else None
+        except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
             return None
 
     def save(self, key: str, record: Record) -> None:
@@ -149,5 +155,13 @@ Keep = Nowhere | Folder
 
 
 def kept_in(path: str | Path | None, resume: bool) -> Keep:
-    """The folder at `path`, or nowhere."""
+    """The folder at `path`, or nowhere.
+
+    Raises:
+        InputError: It is no folder, or there is none to resume from.
+    """
+    if path is not None and not isinstance(path, (str, os.PathLike)):
+        raise InputError(f"study: keep = {path!r} names no folder; write keep='FOLDER'")
+    if resume and path is None:
+        raise InputError("study: resume takes members from a folder, and none is named; write keep='FOLDER', too")
     return Folder(path, resume) if path is not None else Nowhere()

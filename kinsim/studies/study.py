@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,7 @@ from ..run import describe
 from ..scene import Scene
 from .dataset import to_dataset
 from .engine import Tell, engine
+from .given import check_given
 from .member import ONCE, Member, Refused, Request, code_stamp
 from .record import Keep, Record, check_fields, failed, kept_in
 from .vary import check_over, vary
@@ -30,7 +32,7 @@ def study(
     over: Mapping[str, Sequence[Any]],
     *,
     paired: bool = False,
-    fields: Sequence[str] = (),
+    fields: Sequence[str] | str = (),
     save_every: int = ONCE,
     force: bool = False,
     repeats: int = 1,
@@ -52,7 +54,7 @@ def study(
         over: By dotted path, as in a scene file ("chute.zeta", "method.velocity.count", "clock.dt", or a whole
             "method"): the values.
         paired: Take the lists side by side instead of every combination.
-        fields: Histories to keep: "h", "q", "u", or columns of the ledger, every `save_every` steps.
+        fields: Histories to keep, or one: "h", "q", "u", or columns of the ledger, every `save_every` steps.
         save_every: Steps from one row of a history to the next.
         force: Run although the CFL bound (28) is broken.
         repeats: So often all members are run in turn; times are kept of each round, all else of the first.
@@ -70,13 +72,16 @@ def study(
         go together, "error" if it broke) and NaN.
 
     Raises:
-        InputError: Nothing varies, or not one member can be run.
+        InputError: Nothing varies, not one member can be run, or an argument makes no sense.
         KeyboardInterrupt: Ctrl-C; finished members are in `keep`.
     """
+    check_given("study", scene, method, clock)
+    if isinstance(repeats, bool) or not isinstance(repeats, Integral):
+        raise InputError(f"study: repeats = {repeats!r} is no whole number; take 1 to run each member once")
     if repeats < 1:
         raise InputError(f"study: repeats = {repeats} is below 1; take 1 to run each member once")
     lists = check_over(over, paired)
-    request = Request(check_fields(tuple(fields)), save_every, force, traced)
+    request = Request(check_fields(fields), save_every, force, traced)
     rows = vary(scene, method, clock, lists, paired, request)
     rounds = [[_again(row, number) for row in rows] for number in range(repeats)]
     members = [one for again in rounds for one in again if isinstance(one, Member)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import is_dataclass
 from typing import Any
@@ -20,6 +21,9 @@ from .member import Member, Refused, Request
 
 Over = Mapping[str, Sequence[Any]]
 
+MOST = 1_000_000
+"""Members that the table of a study holds: each takes about a kilobyte, and all are in memory at once."""
+
 
 def check_over(over: Over, paired: bool) -> dict[str, list[Any]]:
     """`over` with lists.
@@ -31,7 +35,9 @@ def check_over(over: Over, paired: bool) -> dict[str, list[Any]]:
         raise InputError("study: nothing varies; give over = {'chute.zeta': [0, 0.1]}, or --over chute.zeta=0,0.1")
     lists: dict[str, list[Any]] = {}
     for path, values in over.items():
-        if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)):
+        if not isinstance(path, str):
+            raise InputError(f"study: over {path!r}: is no key; write a dotted path such as 'chute.zeta'")
+        if isinstance(values, str) or not isinstance(values, (Sequence, np.ndarray)) or getattr(values, "ndim", 1) == 0:
             raise InputError(f"study: over {path}: should be a list of values, got a {type(values).__name__}")
         lists[path] = [value.item() if isinstance(value, np.generic) else value for value in values]
         if not lists[path]:
@@ -40,6 +46,9 @@ def check_over(over: Over, paired: bool) -> dict[str, list[Any]]:
     if paired and len(set(lengths.values())) > 1:
         told = ", ".join(f"{length} of {path}" for path, length in lengths.items())
         raise InputError(f"study: paired lists are of one length, and there are {told}; make them alike")
+    many = max(lengths.values()) if paired else math.prod(lengths.values())
+    if many > MOST:
+        raise InputError(f"study: {many} members are more than a table in memory holds; take at most {MOST}")
     return lists
 
 
@@ -138,6 +147,8 @@ def _range(text: str, request: str) -> list[float] | list[int]:
         raise InputError(f"--over {request}: {error}; write FROM:TO:HOW-MANY, for example 0:0.5:11") from None
     if count < 2:
         raise InputError(f"--over {request}: {count} values make no range; take 2 or more")
+    if count > MOST:
+        raise InputError(f"--over {request}: {count} values are more than a table in memory holds; take at most {MOST}")
     values = np.linspace(first, last, count)
     whole = all(part.strip().lstrip("-").isdigit() for part in (start, stop)) and (values == np.rint(values)).all()
     return [int(one) for one in values] if whole else [float(one) for one in values]

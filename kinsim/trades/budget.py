@@ -14,6 +14,7 @@ from ..kinetic.velocity import Fitted, Window
 from ..method import Kinetic, Macroscopic
 from ..run import ENDED
 from ..scene import Scene
+from ..studies.given import check_given
 from ..studies.study import study
 from .choose import candidates
 from .cost import seconds_per_step
@@ -86,6 +87,7 @@ def budget(scene: Scene, method: Kinetic | Macroscopic, clock: Fixed | Courant, 
     Raises:
         InputError: The scene has no mass, or one of the runs does not come to its end.
     """
+    check_given("budget", scene, method, clock)
     mass, end, twin = mass_of(scene, clock.end), clock.end, twin_of(method)
     first = clock if isinstance(clock, Fixed) else steady(scene, method, clock.number, end)
     halves = [replace(first, dt=first.dt / part, steps=first.steps * part) for part in (1, 2, 4)]

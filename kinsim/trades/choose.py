@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ from ..method import Kinetic, Macroscopic
 from ..run import Run
 from ..scene import Scene
 from ..simulate import simulate
+from ..studies.given import check_given
 from ..studies.member import ONCE
 from .cost import Cost, seconds_per_step
 from .judge import mass_of
@@ -85,19 +87,21 @@ def choose(
         options: `keep`, `resume`, `tell`, ... of `kinsim.study`.
 
     Raises:
-        InputError: It cannot be had; the message names the nearest that can. Or the scheme is not 4, or pilot runs
-            tell nothing.
+        InputError: It cannot be had; the message names the nearest that can. Or the scheme is not 4, pilot runs
+            tell nothing, or an argument makes no sense.
     """
+    check_given("choose", scene, method, clock)
     if not isinstance(method, Kinetic):
         raise InputError("choose: the closed form has no velocity error; leave out the accuracy, or take Kinetic")
-    if isinstance(accuracy, bool) or not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < math.inf:
+    if isinstance(accuracy, bool) or not isinstance(accuracy, Real) or not 0.0 < accuracy < math.inf:
         raise InputError(f"choose: accuracy = {accuracy!r} is no error to stay below; take a number > 0, such as 1e-4")
     if method.scheme != 4:
         raise InputError(
             f"choose: scheme {method.scheme} amplifies any rounding where a mass stops, so that no pilot run tells its "
             "velocity error; take scheme 4 (--set method.scheme=4)"
         )
-    rest = list(among) if among is not None else candidates(method, grid)
+    accuracy = float(accuracy)
+    rest = candidates(method, grid) if among is None else _own(among, method)
     if not rest:
         raise InputError("choose: there are no candidates; give at least one")
     pilots = Pilots(scene, method, clock, **options)
@@ -120,6 +124,22 @@ def choose(
         f"choose: a velocity error below {accuracy:.3g} cannot be had; the nearest is {error:.2g}, "
         f"with {best.velocity.words}: ask for {_up(error):.2g}"
     )
+
+
+def _own(among: Any, method: Kinetic) -> list[Kinetic]:
+    """Candidates of the caller's own, if they share the twin of `method`."""
+    if not isinstance(among, Sequence):
+        raise InputError(f"choose: among is a {type(among).__name__}; give a list of Kinetic methods")
+    for at, one in enumerate(among):
+        if not isinstance(one, Kinetic) or not isinstance(one.velocity, (Uniform, Fitted)):
+            what = one.velocity.words if isinstance(one, Kinetic) else type(one).__name__
+            raise InputError(f"choose: among[{at}] is {what}; give Kinetic methods with Uniform or Fitted nodes")
+        if one.twin != method.twin:
+            raise InputError(
+                f"choose: among[{at}] has another closed form ({one.twin}) than the method ({method.twin}); "
+                "let them differ in velocity nodes, equilibrium, force and projection alone"
+            )
+    return list(among)
 
 
 def _cheapest(

@@ -16,6 +16,7 @@ from ..method import Kinetic, Macroscopic
 from ..run import ENDED
 from ..scene import Scene
 from ..studies.engine import Tell
+from ..studies.given import check_given
 from ..studies.study import study
 from .family import Choice, chosen
 from .front import knee, pareto
@@ -75,6 +76,7 @@ def trade(
         InputError: The family is empty, the scene has no mass, or the reference does not come to the end.
         KeyboardInterrupt: Ctrl-C; what is measured is in `keep`.
     """
+    check_given("trade", scene, method, clock)
     if family is not None and not family:
         raise InputError("trade: the family is empty; give at least one choice")
     picked = list(family) if family is not None else chosen(method, lines)
