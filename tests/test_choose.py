@@ -207,6 +207,8 @@ def test_candidates_of_ones_own_share_the_twin(among: object, line: str) -> None
 def test_arguments_of_a_choice() -> None:
     with pytest.raises(InputError, match="choose: scene is a str; give a"):
         choose("silo", Kinetic(), CLOCK, accuracy=1e-3)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="advise: scene is a str; give a"):
+        advise("silo", CLOCK)  # type: ignore[arg-type]
     for what in (budget, trade):
         with pytest.raises(InputError, match=rf"{what.__name__}: clock is a float; give a?"):
             what(SILO, Kinetic(), 0.1)  # type: ignore[operator]

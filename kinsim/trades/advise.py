@@ -15,6 +15,7 @@ from ..method import Kinetic, Macroscopic
 from ..model.friction import Frictionless
 from ..run import ENDED
 from ..scene import Scene
+from ..studies.given import check_given
 from ..studies.study import study
 from .cost import ROUNDS, short_clock
 from .judge import mass_of
@@ -82,7 +83,9 @@ def advise(scene: Scene, clock: Fixed | Courant, **options: Any) -> Advice:
     Raises:
         InputError: The scene has no mass, or the coarse run does not come to its end.
     """
-    coarse, method = finer(scene, COARSE), Macroscopic(4)
+    method = Macroscopic(4)
+    check_given("advise", scene, method, clock)
+    coarse = finer(scene, COARSE)
     mass = mass_of(coarse, clock.end)
     pace = steady(coarse, method, NUMBER, clock.end)
     every = max(1, pace.steps // ROWS)
