@@ -7,7 +7,10 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType, TracebackType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
+
+if TYPE_CHECKING:
+    from .run import Run
 
 
 class Deferred:
@@ -46,3 +49,14 @@ def terminable() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, usual)
+
+
+def unless_interrupted(run: Run) -> Run:
+    """`run`; what interrupted it interrupts who asked for it, too.
+
+    Raises:
+        KeyboardInterrupt: It was interrupted.
+    """
+    if run.verdict.kind == "interrupted":
+        raise KeyboardInterrupt
+    return run

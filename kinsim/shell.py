@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .errors import InputError
+from .errors import NO_MEMORY, InputError
 from .interrupt import terminable
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def told() -> Iterator[None]:
     except InputError as error:
         complain(str(error), 2)
     except MemoryError:
-        complain("not enough memory; take fewer cells or velocity nodes", 2)
+        complain(NO_MEMORY, 2)
     except KeyboardInterrupt as interrupt:
         complain(f"interrupted; {str(interrupt) or 'nothing was written'}", 130)
 

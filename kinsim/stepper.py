@@ -164,18 +164,8 @@ class Settling(Sliding):
         faces = (now.e, now.theta, now.still)
         seen = (now.low, now.high)
         self._stand = (*self._ground, *self._ends, now.h, now.u, now.q, *faces, *states, now.held, *seen, TOP)
-        self._before = (
-            now.h,
-            now.q,
-            to.h_left,
-            to.h_right,
-            *faces,
-            *seen,
-            now.F1,
-            now.F2,
-            *self._ground,
-            *self._ends[2:],
-        )
+        fluxes = (now.F1, now.F2)
+        self._before = (now.h, now.q, to.h_left, to.h_right, *faces, *seen, *fluxes, *self._ground, *self._ends[2:])
 
     def begin(self, h: Array, q: Array, fastest: float = math.inf) -> float:
         """Stand at U^n, and judge the faces."""

@@ -20,6 +20,7 @@ from matplotlib.figure import Figure
 
 from kinsim import Cells, ConstantSlope, Coulomb, Courant, Macroscopic, Profile, Run, Scene, load_scene, simulate
 from kinsim.exact import ParabolicCap, StaticPile
+from kinsim.mean import mean_velocity
 
 FIRST, SECOND = Macroscopic(4), Macroscopic(4, order=2)
 DEGREE = math.pi / 180
@@ -63,7 +64,7 @@ def sliding(chapter: Chapter, count: int) -> Figure:
     zeta = math.asin(cap.pull)
     cells, end = Cells(-4, 6, count), 2.0
     h, q = cap.averages(cells, 0.0)
-    scene = Scene(cells, Profile(h, np.divide(q, h, out=np.zeros_like(h), where=h > 0)), ConstantSlope(zeta),
+    scene = Scene(cells, Profile(h, mean_velocity(q, h)), ConstantSlope(zeta),
                   Coulomb(math.atan(cap.resistance / math.cos(zeta))), epsilon=cap.beta / math.cos(zeta))  # fmt: skip
     figure, panels = _panels(2)
     for axes, method, name in zip(panels, (FIRST, SECOND), ("first order", "second order"), strict=True):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ..clock import AnyClock, Courant
+from ..interrupt import unless_interrupted
 from ..kinetic.velocity import Uniform
 from ..memory import require
 from ..method import Kinetic
@@ -30,9 +31,8 @@ def shoot(file: SceneFile, frames: int, force: bool = False, progress: Progress 
     runs: list[Run] = []
     for method in (file.method, *([file.method.twin] if isinstance(file.method, Kinetic) else [])):
         clock: AnyClock = runs[0].replay if runs and isinstance(file.clock, Courant) else file.clock
-        runs.append(simulate(file.scene, method, clock, every, force=force, dumps=dumps, progress=progress))
-        if runs[-1].verdict.kind == "interrupted":
-            raise KeyboardInterrupt
+        run = simulate(file.scene, method, clock, every, force=force, dumps=dumps, progress=progress)
+        runs.append(unless_interrupted(run))
         if not runs[-1].steps:
             break
         dumps = []

@@ -73,16 +73,9 @@ def cap(rows: Array, row: Place, most: Place, low: int, high: int) -> None:
 
 @kernel_part
 def transport_row(
-    rows: Array,
-    here: Place,
-    leaving: Place,
-    coming: Place,
-    speed: Array,
-    lam: float,
-    low: int,
-    high: int,
+    rows: Array, here: Place, leaving: Place, coming: Place, speed: Array, lam: float, low: int, high: int,
     padded: Array,
-) -> None:
+) -> None:  # fmt: skip
     """M - lam |xi| (M_leaving - M_coming) of nodes on one side of xi = 0, one entry further in `padded`."""
     for j in range(Place(low), Place(high)):
         a = lam * speed[j]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..balance.sides import TINY
 from ..kernel import kernel, kernel_inner, kernel_part
-from .equilibrium.averages import antiderivative, average_inside, sample_inside
+from .equilibrium.averages import antiderivative, average_inside, nodes_between, sample_inside
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -106,8 +106,7 @@ def add_lanes(
 ) -> None:  # fmt: skip
     """Sums over xi > 0 of all lanes, in which M reaches from `slowest` on, to `early` at least, `quickest` at most."""
     half = w1.size
-    begin = int(min(max(slowest / dxi - 1.0, 0.0), half))
-    end = math.ceil(min(max(quickest / dxi + 1.0, 0.0), half))
+    begin, end = nodes_between(slowest, quickest, dxi, half)
     for i in range(LANES):
         room[M1 + i], room[M2 + i], room[LAST + i] = 0.0, 0.0, -np.inf
     if averaged:

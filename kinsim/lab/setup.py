@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from ..clock import Fixed
-from ..errors import InputError
+from ..errors import InputError, line_of
 from ..method import Kinetic, unread
 from ..model.friction import Frictionless
 from ..model.heap import Blocks, Table
@@ -105,7 +105,7 @@ class Setup:
             file = self.file
             make_scheme(file.method, file.scene)
         except (InputError, MemoryError) as error:
-            return str(error) or "not enough memory; take fewer cells or velocity nodes"
+            return line_of(error)
         limit, courant = largest_courant(file.method), first_courant(file)
         if courant <= limit * (1.0 + ROUNDING):
             return ""

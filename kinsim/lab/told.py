@@ -27,13 +27,13 @@ PROJECTION = (
     "M of these is where the next step begins."
 )
 
-OTHERWISE = {
-    "order": "Order 2 gives cells slopes, and sums up what those show to the wall; shaded is what means show.",
-    "reflect": "Scheme 4 with reflecting statics turns particles round at a face that friction holds; shaded is what "
-    "comes to it.",
-    "coupled": "Slow cells take the balanced face (25), others the upwind one (19): a step tells which this does.",
-}
-"""What a scheme sums up at a wall, where that is not simply one kind of face."""
+SLOPED = "Order 2 gives cells slopes, and sums up what those show to the wall; shaded is what means show."
+
+REFLECTED = (
+    "Scheme 4 with reflecting statics turns particles round at a face that friction holds; shaded is what comes to it."
+)
+
+COUPLED = "Slow cells take the balanced face (25), others the upwind one (19): a step tells which this does."
 
 
 def told(moment: Moment, method: Kinetic, forced: bool) -> str:
@@ -48,11 +48,13 @@ def told(moment: Moment, method: Kinetic, forced: bool) -> str:
 def passing(play: Play, moment: Moment, cell: int) -> str:
     """What the scheme sums up at the right wall of a cell, if no choice of faces says so; a sentence or nothing."""
     method = play.method
-    if method.order == 2 or (method.scheme == 4 and method.statics == "reflect"):
-        return OTHERWISE["order" if method.order == 2 else "reflect"]
+    if method.order == 2:
+        return SLOPED
+    if method.scheme == 4 and method.statics == "reflect":
+        return REFLECTED
     if method.scheme != 3:
         return ""
     if not moment.step or moment.stage == "projection":
-        return OTHERWISE["coupled"]
+        return COUPLED
     slow = bool(play.loop.stepper.now.at_right[min(cell, moment.h.size - 2)])
     return f"In this step the cell took {'the balanced face (25)' if slow else 'the upwind face (19)'} here."

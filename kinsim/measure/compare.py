@@ -10,6 +10,7 @@ import numpy as np
 
 from ..clock import AnyClock, Courant, Fixed
 from ..errors import InputError
+from ..interrupt import unless_interrupted
 from ..method import Kinetic, Macroscopic
 from ..run import Run
 from ..scene import Scene
@@ -59,9 +60,8 @@ def compare(
     runs: list[Run] = []
     for number, method in enumerate(methods):
         part = _part(progress, number, len(methods)) if progress else None
-        runs.append(simulate(scene, method, _after(runs, clock), save_every, force=force, progress=part))
-        if runs[-1].verdict.kind == "interrupted":
-            raise KeyboardInterrupt
+        run = simulate(scene, method, _after(runs, clock), save_every, force=force, progress=part)
+        runs.append(unless_interrupted(run))
     apart = _differences(runs)
     return apart.merge(_seams(runs, save_every)) if seams else apart
 

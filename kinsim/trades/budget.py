@@ -20,7 +20,7 @@ from .choose import candidates
 from .cost import seconds_per_step
 from .judge import judge, mass_of
 from .pace import steady, twin_of
-from .pilot import Pilots, kind_of, nodes
+from .pilot import Pilots, kind_of, nodes, untold
 
 ENOUGH = 0.1
 """A velocity error of this share of the error of dx pays no more."""
@@ -140,11 +140,8 @@ def _advice(
     if isinstance(method, Macroscopic) or isinstance(method.velocity, Window):
         return ""
     kind = "fitted nodes" if isinstance(method.velocity, Fitted) else "nodes"
-    if method.scheme != 4:
-        return (
-            f"How many {kind} would do cannot be said: scheme {method.scheme} amplifies any rounding where a mass "
-            "stops, so that no pilot run tells its velocity error."
-        )
+    if why := untold(method):
+        return f"How many {kind} would do cannot be said: {why}."
     same = sorted({method, *(one for one in candidates(method) if kind_of(one) == kind_of(method))}, key=nodes)
     pilots = Pilots(scene, method, clock, **options)
     pilots.ask(same[:3])

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..clock import Courant, Fixed
 from ..errors import InputError
+from ..interrupt import unless_interrupted
 from ..kinetic.velocity import Fitted, Uniform
 from ..measure.compare import method_name
 from ..method import Kinetic, Macroscopic
@@ -22,7 +23,7 @@ from ..studies.given import check_given
 from ..studies.member import ONCE
 from .cost import Cost, seconds_per_step
 from .judge import mass_of
-from .pilot import Pilots, kind_of, nodes
+from .pilot import Pilots, kind_of, nodes, untold
 
 FITTED = (1, 2, 3, 4, 6, 8)
 COUNTS = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512)
@@ -95,11 +96,8 @@ def choose(
         raise InputError("choose: the closed form has no velocity error; leave out the accuracy, or take Kinetic")
     if isinstance(accuracy, bool) or not isinstance(accuracy, Real) or not 0.0 < accuracy < math.inf:
         raise InputError(f"choose: accuracy = {accuracy!r} is no error to stay below; take a number > 0, such as 1e-4")
-    if method.scheme != 4:
-        raise InputError(
-            f"choose: scheme {method.scheme} amplifies any rounding where a mass stops, so that no pilot run tells its "
-            "velocity error; take scheme 4 (--set method.scheme=4)"
-        )
+    if why := untold(method):
+        raise InputError(f"choose: {why}; take scheme 4 (--set method.scheme=4)")
     accuracy = float(accuracy)
     rest = candidates(method, grid) if among is None else _own(among, method)
     if not rest:
@@ -199,9 +197,8 @@ def velocity_error(run: Run) -> float:
     """
     if isinstance(run.method, Macroscopic):
         raise InputError("velocity error: the closed form has none; give a kinetic run")
-    twin = simulate(run.scene, run.method.twin, run.replay, ONCE, force=True)  # a thin front of its own may be faster
-    if twin.verdict.kind == "interrupted":
-        raise KeyboardInterrupt
+    taken = simulate(run.scene, run.method.twin, run.replay, ONCE, force=True)  # a thin front of its own may be faster
+    twin = unless_interrupted(taken)
     if twin.steps < run.steps:
         return math.inf
     return float(np.abs(run.h[-1] - twin.h[-1]).sum() * run.scene.cells.dx / mass_of(run.scene, run.clock.end))

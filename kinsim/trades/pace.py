@@ -11,6 +11,7 @@ import numpy as np
 
 from ..clock import Courant, Fixed
 from ..errors import InputError
+from ..interrupt import unless_interrupted
 from ..mean import mean_velocity
 from ..method import Kinetic, Macroscopic
 from ..model.cells import Cells
@@ -71,9 +72,7 @@ def steady(scene: Scene, method: Kinetic | Macroscopic, number: float, end: floa
         InputError: The closed form does not come to the end.
     """
     allowed = min(number, largest_courant(method))
-    run = simulate(scene, twin_of(method), Courant(allowed, end), ONCE)
-    if run.verdict.kind == "interrupted":
-        raise KeyboardInterrupt
+    run = unless_interrupted(simulate(scene, twin_of(method), Courant(allowed, end), ONCE))
     if run.t[-1] < end:
         raise InputError(f"the closed form does not come to t = {end:g}: {run.verdict}; take a scene that does")
     shortest = float(run.dt[:-1].min()) if run.dt.size > 1 else end
@@ -90,7 +89,5 @@ def under_way(scene: Scene) -> Scene:
         return scene
     method = Macroscopic(4)
     across = (scene.cells.right - scene.cells.left) / scene.fastest
-    run = simulate(scene, method, Courant(0.8 * largest_courant(method), across), ONCE)
-    if run.verdict.kind == "interrupted":
-        raise KeyboardInterrupt
+    run = unless_interrupted(simulate(scene, method, Courant(0.8 * largest_courant(method), across), ONCE))
     return replace(scene, heap=Profile(run.h[-1], run.u[-1]))

@@ -188,6 +188,14 @@ def _awake(record: Record) -> float:
     return float(record.figures["awake"]) if record.figures["verdict_kind"] in ENDED else math.nan
 
 
+def untold(method: Kinetic) -> str:
+    """Why no pilot run tells the velocity error of a method, or nothing."""
+    if method.scheme == 4:
+        return ""
+    unstable = f"scheme {method.scheme} amplifies any rounding where a mass stops"
+    return f"{unstable}, so that no pilot run tells its velocity error"
+
+
 def nodes(method: Kinetic) -> int:
     """Velocity nodes of a method on a grid or with fitted ones."""
     assert isinstance(method.velocity, (Uniform, Fitted))

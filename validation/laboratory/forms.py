@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from kinsim.kinetic.equilibrium import EQUILIBRIA, EquilibriumName, Status
 from kinsim.kinetic.velocity import Grid
 from kinsim.macroscopic.half_moments import half_moments_of_cells
+from kinsim.mean import mean_velocity
 from kinsim.smooth.affine import affine_map
 from kinsim.smooth.riccati import riccati
 from laboratory.bend import Bend
@@ -179,7 +180,7 @@ def march(form: Form, wing: Closed | OnNodes, bend: Bend, h: Array, u: Array, dt
         wide_h, wide_u = np.pad(h, 1, "edge"), np.concatenate([-u[:1], u, -u[-1:]])
         F1, F2, f = wing.transport(bend, w, wide_h, wide_u, dt)
         a, m = inner * h - lam * np.diff(F1), inner * h * u - lam * np.diff(F2)
-        u = np.divide(m, a, out=np.zeros_like(m), where=a > 0.0)
+        u = mean_velocity(m, a)
         pulled = u + dt * bend.pull
         held = np.copysign(np.maximum(np.abs(pulled) - dt * bend.resistance, 0.0), pulled)
         factor, u = wing.force(form, bend, f, a / inner, u, (held - u) / dt, dt)

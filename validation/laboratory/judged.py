@@ -20,6 +20,7 @@ from kinsim.exact import (
     TravellingShock,
     UniformSlide,
 )
+from kinsim.mean import mean_velocity
 from kinsim.studies.record import Record
 
 from .family import Method, family
@@ -142,5 +143,5 @@ def scene_of(exact: Any, cells: Cells, beta: float) -> Scene:
     h, q = exact.averages(cells, 0.0)
     zeta = math.asin(getattr(exact, "pull", 0.0))
     friction = Coulomb(math.atan(getattr(exact, "resistance", 0.0) / math.cos(zeta)))
-    heap = Profile(h, np.divide(q, h, out=np.zeros_like(h), where=h > 0))
+    heap = Profile(h, mean_velocity(q, h))
     return Scene(cells=cells, heap=heap, chute=ConstantSlope(zeta), friction=friction, epsilon=beta / math.cos(zeta))

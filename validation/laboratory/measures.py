@@ -13,6 +13,7 @@ from kinsim import Cells, ConstantSlope, Coulomb, Fixed, Kinetic, Macroscopic, P
 from kinsim.kinetic.equilibrium import EQUILIBRIA, Status
 from kinsim.kinetic.fitted import gauss_jacobi
 from kinsim.kinetic.velocity import Fitted
+from kinsim.mean import mean_velocity
 from kinsim.simulate import find_bound
 
 from .variants import Make
@@ -48,7 +49,7 @@ def disturbed(scene: Scene, size: float, seed: int = 1) -> Scene:
     """Each height moved by a relative -size, 0 or size."""
     h, q = scene.initial()
     dice = np.random.default_rng(seed).choice([-1, 0, 1], h.size)
-    return replace(scene, heap=Profile(h * (1.0 + size * dice), np.divide(q, h, out=np.zeros_like(q), where=h > 0)))
+    return replace(scene, heap=Profile(h * (1.0 + size * dice), mean_velocity(q, h)))
 
 
 def distance(run: Run, other: Run) -> float:

@@ -73,13 +73,22 @@ def sample(h: float, u: float, beta: float, xi: Array, rows: Array, i: int, begi
 
 
 @kernel_inner
+def nodes_between(slowest: float, quickest: float, dxi: float, half: int) -> tuple[int, int]:
+    """The first of the nodes xi > 0 between two velocities, and one past the last, with one to spare on each side.
+
+    For u - c may be u, at the edge of a velocity cell.
+    """
+    return int(min(max(slowest / dxi - 1.0, 0.0), half)), math.ceil(min(max(quickest / dxi + 1.0, 0.0), half))
+
+
+@kernel_inner
 def sample_inside(h: float, u: float, beta: float, dxi: float, side: Array) -> tuple[int, int]:
     """The same at nodes that cover the support; returns the first and one past the last, and leaves out the others."""
     square = 2.0 * beta * max(h, 0.0)
     scale = 1.0 / (math.pi * beta)
-    c, half = math.sqrt(square), side.size
-    begin = int(min(max((u - c) / dxi - 1.0, 0.0), half))
-    end = math.ceil(min(max((u + c) / dxi + 1.0, 0.0), half)) if c > 0.0 else begin
+    c = math.sqrt(square)
+    begin, end = nodes_between(u - c, u + c, dxi, side.size)
+    end = end if c > 0.0 else begin
     inside = side[begin:end]
     for k in range(inside.size):
         w = (begin + k + 0.5) * dxi - u
@@ -112,10 +121,9 @@ def average_side(h: float, u: float, beta: float, dxi: float, side: Array) -> No
 @kernel_inner
 def average_inside(h: float, u: float, beta: float, dxi: float, side: Array) -> tuple[int, int]:
     """The same from the first cell that M reaches to the last; returns these, last + 1, and leaves out the others."""
-    half = side.size
     c = math.sqrt(2.0 * beta * max(h, 0.0))
-    begin = int(min(max((u - c) / dxi - 1.0, 0.0), half))  # for u - c may be u, at the edge of a velocity cell
-    end = math.ceil(min(max((u + c) / dxi + 1.0, 0.0), half)) if c > 0.0 else begin
+    begin, end = nodes_between(u - c, u + c, dxi, side.size)
+    end = end if c > 0.0 else begin
     inside = side[begin:end]
     for k in range(inside.size):
         inside[k] = antiderivative(((begin + k + 1) * dxi - u) / c)

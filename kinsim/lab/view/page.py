@@ -14,7 +14,7 @@ from bokeh.models import CustomJS
 from panel.io.document import unlocked
 from tornado.ioloop import IOLoop
 
-from ...errors import InputError
+from ...errors import InputError, line_of
 from ...read import built_in
 from ...run import ENDED
 from ..cut import faces_of
@@ -62,10 +62,8 @@ class Page:
         """Run what a setup says, from its start; where it is refused say why, and keep the last run on the page."""
         self._setup, self._asked = setup, []
         self._controls.fit(setup)
-        for widget in self._widgets.runs:
-            widget.disabled = bool(setup.refusal)
+        self._allow(not setup.refusal)
         if setup.refusal:
-            self._halt()
             self._painter.say(setup.refusal, "fault")
             return
         self._wanted = setup
@@ -133,7 +131,9 @@ class Page:
         try:
             play = made.result()
         except (InputError, MemoryError) as error:
-            self._refuse(error)
+            self._asked = []
+            self._allow(False)
+            self._fault(error)
             return
         if COMPILING in self._painter.said:
             self._painter.say(" ".join(setup.notes))
@@ -246,15 +246,14 @@ class Page:
         return io.BytesIO(self._setup.toml().encode("utf-8"))
 
     def _fault(self, error: Exception) -> None:
-        self._painter.say(str(error) or "not enough memory; take fewer cells or velocity nodes", "fault")
+        self._painter.say(line_of(error), "fault")
 
-    def _refuse(self, error: Exception) -> None:
-        """Keep the last run on the page, but not as that of a setting that could not be made."""
-        self._halt()
+    def _allow(self, run: bool) -> None:
+        """Let the setting be run, or keep the last run on the page, but not as that of this setting."""
         for widget in self._widgets.runs:
-            widget.disabled = True
-        self._asked = []
-        self._fault(error)
+            widget.disabled = not run
+        if not run:
+            self._halt()
 
     def _left(self, context: Any) -> None:
         """The tab is gone, and with it all that it showed."""
