@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -37,7 +39,7 @@ from kinsim.trades import choose as choosing
 from kinsim.trades.choose import candidates, velocity_error
 from kinsim.trades.cost import Cost
 from kinsim.trades.judge import mass_of
-from kinsim.trades.pace import finer, under_way
+from kinsim.trades.pace import finer, steady, under_way
 from kinsim.trades.pilot import Pilots
 
 SILO, _, _ = load_scene("silo")
@@ -52,6 +54,65 @@ def test_the_velocity_error_is_what_compare_finds() -> None:
     assert velocity_error(run) == pytest.approx(apart / (SILO.initial()[0].sum() * SILO.cells.dx), rel=1e-12)
     with pytest.raises(InputError, match="the closed form has none"):
         velocity_error(simulate(SILO, Macroscopic(), CLOCK))
+
+
+def test_what_is_ruled_out_is_looked_at_by_its_nodes_whatever_the_clock_says() -> None:
+    """A machine with other work may time 8 nodes as the dearest; that they do not do rules nothing out but fewer."""
+
+    errors = {8: 1e-2, 32: 5e-4, 64: 1e-5, 256: math.inf}
+
+    class Foretold:
+        least_awake = 1.0
+
+        def awake(self, one: Kinetic) -> float:
+            return 1.0
+
+        def foreseen(self, one: Kinetic) -> float:
+            return 1.0
+
+        def predicted(self, one: Kinetic) -> float:
+            return errors[one.velocity.count]
+
+    family = {n: Kinetic(velocity=Uniform(n)) for n in errors}
+    costs = {family[n]: Cost(0.0, seconds) for n, seconds in ((32, 1.0), (256, 2.0), (64, 3.0), (8, 4.0))}
+    best = choosing._cheapest(sorted(costs, key=lambda one: costs[one].of(1.0)), costs, Foretold(), 1e-3)
+    assert best == family[32]
+
+
+def test_a_margin_that_widens_on_the_way_has_another_one_picked() -> None:
+    """64 nodes are looked at since they may sleep; that they tell more of the margin must not end in a refusal."""
+    family = {n: Kinetic(velocity=Uniform(n)) for n in (16, 32, 64)}
+    costs = {method: Cost(0.0, float(n)) for n, method in family.items()}
+
+    class Foretold:
+        least_awake, margin = 0.3, 1.0
+
+        def awake(self, one: Kinetic) -> float:
+            return 1.0
+
+        def foreseen(self, one: Kinetic) -> float:
+            return 0.0
+
+        def predicted(self, one: Kinetic) -> float:
+            self.margin = 1.6 if one == family[64] else self.margin
+            return {16: 4e-3, 32: 8e-4, 64: 1e-4}[one.velocity.count] * self.margin
+
+    assert choosing._settled(list(costs), costs, Foretold(), 1e-3) == family[64]
+
+
+@pytest.mark.parametrize("module", ["trades.choose", "trades.pace", "measure.compare"])
+def test_what_interrupts_a_run_interrupts_who_asked_for_it(module: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that Ctrl-C ended has states, and a verdict; none of them is taken for its end."""
+    run = simulate(SILO, Kinetic(velocity=Uniform(16)), CLOCK)
+    cut = replace(run, verdict=replace(run.verdict, kind="interrupted"))
+    monkeypatch.setattr(import_module(f"kinsim.{module}"), "simulate", lambda *given, **options: cut)
+    asked = {
+        "trades.choose": lambda: velocity_error(run),
+        "trades.pace": lambda: steady(SILO, Kinetic(), 0.8, 3.0),
+        "measure.compare": lambda: compare(SILO, [run.method], CLOCK),
+    }
+    with pytest.raises(KeyboardInterrupt):
+        asked[module]()
 
 
 def test_predictions_are_pilots_times_the_measured_margin() -> None:

@@ -107,10 +107,10 @@ def choose(
     dearest = max(cost.of(1.0) for cost in costs.values())
     rest.sort(key=lambda one: costs[one].of(1.0))
     pilots.ask(rest[:FEWEST])
-    best = _cheapest(rest, costs, pilots, accuracy)
+    best = _settled(rest, costs, pilots, accuracy)
     if best is None:
         most = {kind_of(one): one for one in sorted(rest, key=nodes)}  # a kind may have been given up too early
-        best = min(most.values(), key=pilots.predicted)
+        best = min([*most.values(), *filter(pilots.asked, rest)], key=pilots.predicted)
     error = pilots.predicted(best)
     if error <= accuracy:
         share, own = costs[best].of(pilots.awake(best)), pilots.awake(best)
@@ -140,6 +140,16 @@ def _own(among: Any, method: Kinetic) -> list[Kinetic]:
     return list(among)
 
 
+def _settled(
+    ordered: Sequence[Kinetic], costs: Mapping[Kinetic, Cost], pilots: Pilots, accuracy: float
+) -> Kinetic | None:
+    """The cheapest, picked anew while pilots asked meanwhile have widened the margin so that it will not do."""
+    best = _cheapest(ordered, costs, pilots, accuracy)
+    while best is not None and pilots.predicted(best) > accuracy:
+        best = _cheapest(ordered, costs, pilots, accuracy)
+    return best
+
+
 def _cheapest(
     ordered: Sequence[Kinetic], costs: Mapping[Kinetic, Cost], pilots: Pilots, accuracy: float
 ) -> Kinetic | None:
@@ -164,7 +174,7 @@ def _cheapest(
         elif better(one):
             best = one
     lost = set()
-    for one in reversed(passed):
+    for one in sorted(passed, key=nodes, reverse=True):
         if kind_of(one) in lost:
             continue
         if better(one):

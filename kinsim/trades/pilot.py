@@ -159,9 +159,13 @@ class Pilots:
         share = self._awake[method]
         return share if self._sleeps and math.isfinite(share) else 1.0
 
+    def asked(self, method: Kinetic) -> bool:
+        """Whether its pilots were run."""
+        return method in self._found
+
     def keeps(self, method: Kinetic, accuracy: float) -> bool:
         """Whether a pilot was run, and says that the error will be below `accuracy`."""
-        return method in self._found and self.predicted(method) <= accuracy
+        return self.asked(method) and self.predicted(method) <= accuracy
 
     @property
     def least_awake(self) -> float:
