@@ -40,7 +40,7 @@ def main(chapter: Chapter) -> None:
         scene, _, clock = load_scene(name)
         found = trade(
             scene, Kinetic(), clock, lines=None if chapter.full else SMALL, repeats=5 if chapter.full else 1,
-            keep=chapter.out / "trade" if chapter.full else None, resume=True,
+            keep=chapter.out / "trade" if chapter.full else None, resume=chapter.full,
         )  # fmt: skip
         claims(chapter, name, found)
         chapter.table(f"{name}: what is worth its cost; errors are judged by {found.attrs['judge']}", HEADS, rows(

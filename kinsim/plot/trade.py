@@ -42,7 +42,7 @@ def draw_trade(measured: xarray.Dataset) -> Figure:
     """The figure of `plot_trade`."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(13, 5.6), layout="constrained")
+    figure = Figure(figsize=(13, 6.4), layout="constrained")
     costs, nodes = figure.subplots(1, 2)
     figure.suptitle(str(measured.attrs["title"]))
     _costs(measured, costs)
@@ -77,7 +77,7 @@ def _costs(measured: xarray.Dataset, axes: Any) -> None:
         _nothing(axes, "no total errors")
     axes.set_ylabel("total error: L1(h) at the end / mass")
     axes.set_title(f"error against cost; judged by {measured.attrs['judge']}", loc="left", fontsize=10)
-    axes.legend(fontsize=8, frameon=False)
+    _below(axes, 3)
 
 
 def _nodes(measured: xarray.Dataset, axes: Any) -> None:
@@ -121,7 +121,13 @@ def _nodes(measured: xarray.Dataset, axes: Any) -> None:
     if set(ORDERS) & set(line.tolist()):
         axes.plot([], [], ":", color="#777777", label="orders of the fluxes")
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.legend(fontsize=8, frameon=False)
+    _below(axes, 2)
+
+
+def _below(axes: Any, columns: int) -> None:
+    """The legend where no point can be."""
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=columns, fontsize=8, frameon=False,
+                columnspacing=1.2)  # fmt: skip
 
 
 def _nothing(axes: Any, words: str) -> None:
