@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -315,7 +316,7 @@ def _measured(chosen: Chosen | None, ran: Run) -> float:
     from .trades.choose import velocity_error
 
     measured = velocity_error(ran)
-    if measured > chosen.accuracy:
+    if math.isfinite(measured) and measured > chosen.accuracy:
         told = f"the velocity error came to {measured:.2g}, above the {chosen.accuracy:.2g} asked for"
         typer.echo(f"{told}; ask for less, or take more nodes", err=True)
     return measured

@@ -98,6 +98,7 @@ def trade(
     All members end when the scene's clock does, each with the steps of its own Courant number. What is measured is
     kept at once in TRADE.NC.members; after Ctrl-C, --resume does the rest.
     """
+    from .errors import InputError
     from .plot import check_picture, plot_trade
     from .progress import Watched
     from .report_many import trade_report
@@ -106,6 +107,8 @@ def trade(
 
     file = read_scene(name, settings, None)
     check_destination(out)
+    if out.suffix != ".nc":
+        raise InputError(f"{out}: a table and a picture go beside it; name a file that ends in .nc")
     table, picture = out.with_suffix(".csv"), check_picture(out.with_suffix(".png"))
     keep_apart(name, out, table, picture)
     members = Path(f"{out}.members")

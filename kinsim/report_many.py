@@ -101,6 +101,8 @@ def accuracy_rows(chosen: Chosen | None, measured: float) -> list[tuple[str, str
     """What was picked and why, and what the velocity error came to be; nothing, if nothing was picked."""
     if chosen is None:
         return []
+    if np.isinf(measured):
+        return [("picked", escape(chosen.why)), ("velocity error", "[red]none to be measured: the run has no end[/]")]
     colour, word = ("green", "below") if measured <= chosen.accuracy else ("red", "above")
     told = f"{measured:.2g} measured against the twin, predicted at most {chosen.predicted:.2g}"
     return [

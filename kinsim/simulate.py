@@ -41,6 +41,7 @@ Progress = Callable[[float], None]
 REST_STEPS = 100
 """So many steps in a row without motion are called rest."""
 
+FORCED = ", or force it (--force, force=True)"
 ROUNDING = 1e-12
 """By so much a Courant number may pass 1: the rounding of its own computation."""
 
@@ -251,10 +252,10 @@ class Loop:
                 return self.verdict("non-finite", f"the Courant number of dt = {dt:.4g} is not finite; stopped")
             if courant > stepper.limit * (1.0 + ROUNDING) and not self.force:
                 if self.step == 0:
-                    raise InputError(_over_the_bound(courant, dt, stepper.limit * dx / speed, clock, stepper.limit))
+                    raise InputError(over_the_bound(courant, dt, speed, dx, clock, stepper.limit) + FORCED)
                 return self.verdict(
                     "cfl-broken",
-                    f"{_over_the_bound(courant, dt, stepper.limit * dx / speed, clock, stepper.limit)}; stopped",
+                    f"{over_the_bound(courant, dt, speed, dx, clock, stepper.limit)}{FORCED}; stopped",
                 )
             self.reached = max(self.reached, reach)
             cut = self._cut(stepper.density, reach)
@@ -465,8 +466,9 @@ def _falling(scene: Scene, clock: AnyClock) -> float:
     return math.sqrt(0.5 * clock.number * scene.cells.dx * drive) if isinstance(clock, Courant) else 0.0
 
 
-def _over_the_bound(courant: float, dt: float, allowed: float, clock: AnyClock, limit: float) -> str:
+def over_the_bound(courant: float, dt: float, speed: float, dx: float, clock: AnyClock, limit: float) -> str:
+    """That a step breaks the CFL bound, and what does not."""
+    allowed = limit * dx / speed
     remedy = f"take dt <= {allowed:.4g}" if isinstance(clock, Fixed) else f"take a Courant number of at most {limit:g}"
     bound = "the CFL bound (28)" if limit == 1.0 else f"the CFL bound of order 2, {limit:g}"
-    broken = f"dt = {dt:.4g} breaks {bound}: Courant number {courant:.4g}"
-    return f"{broken}; {remedy}, or force it (--force, force=True)"
+    return f"dt = {dt:.4g} breaks {bound}: Courant number {courant:.4g}; {remedy}"

@@ -123,6 +123,7 @@ def test_lines_hold_what_the_scheme_can() -> None:
     ("options", "line"),
     [
         ({"family": []}, "the family is empty"),
+        ({"family": [Kinetic()]}, r"family\[0\] is a Kinetic; give kinsim.trades.family.Choice"),
         ({"lines": []}, "the family is empty"),
         ({"lines": ["fited"]}, "no line 'fited'; choose from closed form"),
         ({"family": FAMILY, "repeats": 0}, "repeats = 0"),

@@ -122,6 +122,8 @@ def engine(workers: int = 0, scheduler: str | None = None) -> Engine:
     """
     if isinstance(workers, bool) or not isinstance(workers, int) or workers < 0:
         raise InputError(f"study: workers = {workers!r} is no number of processes; take 0 for none, or more")
+    if scheduler is not None and not isinstance(scheduler, str):
+        raise InputError(f"study: scheduler = {scheduler!r} is no address; take one such as 'tcp://127.0.0.1:8786'")
     if not workers and scheduler is None:
         return InProcess()
     if workers and scheduler is not None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Integral
 from typing import Any
 
 from ..clock import Courant, Fixed
@@ -24,3 +25,15 @@ def check_given(who: str, scene: Any, method: Any, clock: Any) -> None:
     for name, given, kinds, remedy in wanted:
         if not isinstance(given, kinds):
             raise InputError(f"{who}: {name} is a {type(given).__name__}; give {remedy}")
+
+
+def check_count(place: str, given: Any, remedy: str) -> None:
+    """A whole number from 1 on.
+
+    Raises:
+        InputError: It is none.
+    """
+    if isinstance(given, bool) or not isinstance(given, Integral):
+        raise InputError(f"{place} = {given!r} is no whole number; {remedy}")
+    if given < 1:
+        raise InputError(f"{place} = {given} is below 1; {remedy}")

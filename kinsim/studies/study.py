@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
-from numbers import Integral
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..clock import Courant, Fixed
-from ..errors import InputError
 from ..method import Kinetic, Macroscopic
 from ..run import describe
 from ..scene import Scene
 from .dataset import to_dataset
 from .engine import Tell, engine
-from .given import check_given
+from .given import check_count, check_given
 from .member import ONCE, Member, Refused, Request, code_stamp
 from .record import Keep, Record, check_fields, failed, kept_in
 from .vary import check_over, vary
@@ -76,10 +74,8 @@ def study(
         KeyboardInterrupt: Ctrl-C; finished members are in `keep`.
     """
     check_given("study", scene, method, clock)
-    if isinstance(repeats, bool) or not isinstance(repeats, Integral):
-        raise InputError(f"study: repeats = {repeats!r} is no whole number; take 1 to run each member once")
-    if repeats < 1:
-        raise InputError(f"study: repeats = {repeats} is below 1; take 1 to run each member once")
+    check_count("study: repeats", repeats, "take 1 to run each member once")
+    check_count("study: save_every", save_every, "take 1 to keep each state")
     lists = check_over(over, paired)
     request = Request(check_fields(fields), save_every, force, traced)
     rows = vary(scene, method, clock, lists, paired, request)

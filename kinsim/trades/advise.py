@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,9 +21,13 @@ from ..studies.study import study
 from .cost import ROUNDS, short_clock
 from .judge import mass_of
 from .pace import finer, steady, under_way
+from .pilot import OWN
+
+if TYPE_CHECKING:
+    import xarray
 
 COARSE = 0.25
-"""Cells of the coarse run over those of the scene."""
+"""Cells of the coarse run over those of the scene, if these are many: it takes `OWN` at least, as pilots do."""
 
 ROWS = 50
 """States of the coarse run that are looked at, about."""
@@ -83,28 +88,39 @@ def advise(scene: Scene, clock: Fixed | Courant, **options: Any) -> Advice:
     Raises:
         InputError: The scene has no mass, or the coarse run does not come to its end.
     """
-    method = Macroscopic(4)
-    check_given("advise", scene, method, clock)
-    coarse = finer(scene, COARSE)
-    mass = mass_of(coarse, clock.end)
-    pace = steady(coarse, method, NUMBER, clock.end)
-    every = max(1, pace.steps // ROWS)
-    orders = {"method": [method, Macroscopic(4, order=2)]}
-    both = study(coarse, method, pace, orders, fields=("h", "u"), save_every=every, **options)
+    check_given("advise", scene, Macroscopic(4), clock)
+    share = min(max(COARSE, OWN / scene.cells.count), 1.0)
+    coarse = finer(scene, share)
+    both, apart = _both_orders(coarse, clock.end, options)
+    smeared = apart
+    if share < 1.0:
+        _, before = _both_orders(finer(coarse, 0.5), clock.end, options)
+        halved = np.clip(apart / before, 0.5, 1.0) if before > 0.0 else 1.0
+        smeared *= float(halved) ** -math.log2(share)
     found = both.isel(method=0)
-    if str(found["verdict_kind"].item()) not in ENDED:
-        raise InputError(f"advise: the coarse run stops: {found['verdict'].item()}; take a scene that comes to its end")
     t, h, u = (found[f"history_{name}"].to_numpy() for name in ("t", "h", "u"))
-    apart = float(np.abs(np.diff(both["h"].to_numpy(), axis=0)).sum()) * coarse.cells.dx / mass
     wet, c = h > 0.0, np.sqrt(2.0 * coarse.beta * h)
     moves = np.abs(u) > STILL * np.abs(u).max() if u.any() else np.zeros(u.shape, bool)
     filled = wet.any(axis=1)
     low, high = np.where(wet, u - c, np.inf).min(axis=1), np.where(wet, u + c, -np.inf).max(axis=1)
     seen = Advice(
         (), t, np.where(filled, low, np.nan), np.where(filled, high, np.nan),
-        moves.mean(axis=1), (wet & ~moves).mean(axis=1), (~wet).mean(axis=1), COARSE * apart,
+        moves.mean(axis=1), (wet & ~moves).mean(axis=1), (~wet).mean(axis=1), smeared,
     )  # fmt: skip
     return Advice(_parts(scene, seen, _costs(under_way(scene), options)), *list(vars(seen).values())[1:])
+
+
+def _both_orders(scene: Scene, end: float, options: dict[str, Any]) -> tuple[xarray.Dataset, float]:
+    """Runs of first and of second order, and how far they end apart: L1(h) over the mass."""
+    method, mass = Macroscopic(4), mass_of(scene, end)
+    pace = steady(scene, method, NUMBER, end)
+    every = max(1, pace.steps // ROWS)
+    orders = {"method": [method, Macroscopic(4, order=2)]}
+    both = study(scene, method, pace, orders, fields=("h", "u"), save_every=every, **options)
+    for kind, verdict in zip(both["verdict_kind"].values, both["verdict"].values, strict=True):
+        if kind not in ENDED:
+            raise InputError(f"advise: the coarse run stops: {verdict}; take a scene that comes to its end")
+    return both, float(np.abs(np.diff(both["h"].to_numpy(), axis=0)).sum()) * scene.cells.dx / mass
 
 
 def _costs(scene: Scene, options: dict[str, Any]) -> dict[str, float]:

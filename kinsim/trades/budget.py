@@ -143,8 +143,7 @@ def _advice(
     if why := untold(method):
         return f"How many {kind} would do cannot be said: {why}."
     same = sorted({method, *(one for one in candidates(method) if kind_of(one) == kind_of(method))}, key=nodes)
-    pilots = Pilots(scene, method, clock, **options)
-    pilots.ask(same[:3])
+    pilots = Pilots(scene, same, clock, **options)
     below, at = f"less than {_percent(ENOUGH)}", same.index(method)
 
     def enough(one: Kinetic) -> bool:

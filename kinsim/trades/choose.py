@@ -16,9 +16,10 @@ from ..interrupt import unless_interrupted
 from ..kinetic.velocity import Fitted, Uniform
 from ..measure.compare import method_name
 from ..method import Kinetic, Macroscopic
-from ..run import Run
+from ..run import ENDED, Run
 from ..scene import Scene
-from ..simulate import simulate
+from ..simulate import ROUNDING, over_the_bound, simulate
+from ..stepper import largest_courant
 from ..studies.given import check_given
 from ..studies.member import ONCE
 from .cost import Cost, seconds_per_step
@@ -27,8 +28,6 @@ from .pilot import Pilots, kind_of, nodes, untold
 
 FITTED = (1, 2, 3, 4, 6, 8)
 COUNTS = (8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512)
-FEWEST = 3
-"""So many pilots at least tell how much velocity errors change from level to level."""
 
 
 @dataclass(frozen=True)
@@ -99,29 +98,34 @@ def choose(
     if why := untold(method):
         raise InputError(f"choose: {why}; take scheme 4 (--set method.scheme=4)")
     accuracy = float(accuracy)
+    _check_steps(scene, method, clock)
     rest = candidates(method, grid) if among is None else _own(among, method)
     if not rest:
         raise InputError("choose: there are no candidates; give at least one")
-    pilots = Pilots(scene, method, clock, **options)
+    pilots = Pilots(scene, rest, clock, **options)
     costs = dict(zip(rest, seconds_per_step(scene, rest, **options), strict=True))
     dearest = max(cost.of(1.0) for cost in costs.values())
     rest.sort(key=lambda one: costs[one].of(1.0))
-    pilots.ask(rest[:FEWEST])
-    best = _settled(rest, costs, pilots, accuracy)
-    if best is None:
-        most = {kind_of(one): one for one in sorted(rest, key=nodes)}  # a kind may have been given up too early
-        best = min([*most.values(), *filter(pilots.asked, rest)], key=pilots.predicted)
+    best = _cheapest(rest, costs, pilots, accuracy) or min(rest, key=pilots.predicted)
     error = pilots.predicted(best)
     if error <= accuracy:
         share, own = costs[best].of(pilots.awake(best)), pilots.awake(best)
         cheaper = sum(costs[one].of(pilots.least_awake) < share and not pilots.keeps(one, accuracy) for one in rest)
         return Chosen(best, accuracy, error, share / dearest, _why(best, accuracy, pilots, cheaper, len(rest), own))
     if not math.isfinite(error):
-        raise InputError("choose: no pilot run came to its end; take a scene and a method that do")
+        raise InputError("choose: no run comes to its end; take a scene and a method that do")
     raise InputError(
         f"choose: a velocity error below {accuracy:.3g} cannot be had; the nearest is {error:.2g}, "
         f"with {best.velocity.words}: ask for {_up(error):.2g}"
     )
+
+
+def _check_steps(scene: Scene, method: Kinetic, clock: Fixed | Courant) -> None:
+    """The first step keeps the CFL bound; all pilots would break it, too."""
+    speed, dx, limit = scene.fastest, scene.cells.dx, largest_courant(method)
+    courant = clock.number if isinstance(clock, Courant) else speed * clock.dt / dx
+    if courant > limit * (1.0 + ROUNDING):
+        raise InputError(f"choose: {over_the_bound(courant, courant * dx / speed, speed, dx, clock, limit)}")
 
 
 def _own(among: Any, method: Kinetic) -> list[Kinetic]:
@@ -138,16 +142,6 @@ def _own(among: Any, method: Kinetic) -> list[Kinetic]:
                 "let them differ in velocity nodes, equilibrium, force and projection alone"
             )
     return list(among)
-
-
-def _settled(
-    ordered: Sequence[Kinetic], costs: Mapping[Kinetic, Cost], pilots: Pilots, accuracy: float
-) -> Kinetic | None:
-    """The cheapest, picked anew while pilots asked meanwhile have widened the margin so that it will not do."""
-    best = _cheapest(ordered, costs, pilots, accuracy)
-    while best is not None and pilots.predicted(best) > accuracy:
-        best = _cheapest(ordered, costs, pilots, accuracy)
-    return best
 
 
 def _cheapest(
@@ -192,7 +186,7 @@ def _up(error: float) -> float:
 
 def _why(method: Kinetic, accuracy: float, pilots: Pilots, cheaper: int, of: int, awake: float) -> str:
     before = f"the {cheaper} cheaper ones of {of} would miss it" if cheaper else f"the cheapest of {of} candidates"
-    margin = f"a margin of {pilots.margin:.2g} included" if pilots.foretell else "measured on all cells"
+    margin = f"a margin of {pilots.margin:.2g} included" if pilots.foretells(method) else "measured on all cells"
     predicted = f"predicted {pilots.predicted(method):.2g} <= {accuracy:.2g}, {margin}"
     sleeping = f"; {100.0 * awake:.0f} percent of its cells are awake" if awake < 0.995 else ""
     return f"{method_name(method)}: {predicted}; {before}{sleeping}"
@@ -200,13 +194,15 @@ def _why(method: Kinetic, accuracy: float, pilots: Pilots, cheaper: int, of: int
 
 def velocity_error(run: Run) -> float:
     """What the velocity nodes of a run did: L1(h) at its end to the closed-form twin, step by step the same, over
-    the mass; inf if the twin cannot take these steps.
+    the mass; inf if it was stopped, or the twin cannot take these steps.
 
     Raises:
         InputError: The run is the twin.
     """
     if isinstance(run.method, Macroscopic):
         raise InputError("velocity error: the closed form has none; give a kinetic run")
+    if run.verdict.kind not in ENDED:
+        return math.inf
     taken = simulate(run.scene, run.method.twin, run.replay, ONCE, force=True)  # a thin front of its own may be faster
     twin = unless_interrupted(taken)
     if twin.steps < run.steps:

@@ -28,13 +28,18 @@ def twin_of(method: Kinetic | Macroscopic) -> Macroscopic:
 
 
 def finer(scene: Scene, factor: float) -> Scene:
-    """The scene on `factor` times as many cells, at least 2; a heap that is given cell by cell is averaged."""
+    """The scene on `factor` times as many cells, at least 2.
+
+    A heap that is given cell by cell is averaged, and so is one that falls between the middles of fewer cells.
+    """
     count = max(2, round(scene.cells.count * factor))
     if count == scene.cells.count:
         return scene
     cells = replace(scene.cells, count=count)
     if not isinstance(scene.heap, Profile):
-        return replace(scene, cells=cells)
+        sampled = replace(scene, cells=cells)
+        if sampled.initial()[0].any() or not scene.initial()[0].any():
+            return sampled
     return replace(scene, cells=cells, heap=_averaged(scene, cells))
 
 

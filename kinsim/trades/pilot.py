@@ -1,11 +1,12 @@
 """Pilot runs: a scene on fewer cells tells how large velocity errors will be on all of them, and how many cells sleep.
 
 Pilots run on two thirds and a third of the cells; a scene of fewer than `OWN` cells is its own pilot, whose errors are
-measured, not foreseen, and so is one whose pilots tell less than is `PROMISED`. Steps are as long beside dx as those of
-the run, and those of a `Courant` clock are its own: each pilot is held against its twin in the same steps. The velocity
-error of a method hardly depends on dx: it says where, not how often, a flux is off. What it is in the finer pilot is
-taken for the scene itself, times a margin that is measured, too: how much the velocity errors of this scene change from
-the coarser pilots to the finer ones, as far as it is from the finer ones to the scene.
+measured, not foreseen, and so is one whose pilots stop, or tell less than is `PROMISED`. Steps are as long beside dx as
+those of the run, and those of a `Courant` clock are its own: each pilot is held against its twin in the same steps. The
+velocity error of a method hardly depends on dx: it says where, not how often, a flux is off. What it is in the finer
+pilot is taken for the scene itself, times a margin that is measured, too: how much the velocity errors of this scene
+change from the coarser pilots to the finer ones, as far as it is from the finer ones to the scene. Some methods with
+few nodes tell the margin, always the same of a family, so that a prediction does not depend on what else was asked.
 """
 
 from __future__ import annotations
@@ -37,7 +38,10 @@ FINE = 2.0 / 3.0
 """Cells of the finer pilots over those of the scene, if these are many."""
 
 PROMISED = 10.0
-"""A prediction is to be no farther off than this: with a larger margin the scene is its own pilot, too."""
+"""A prediction is to be no farther off than this: above by the margin, times a change as large the other way."""
+
+TELLING = 3
+"""So many methods of a kind tell the margin, those with the fewest nodes."""
 
 CONFIDENCE = 0.975
 """So often the next change of a velocity error, normally distributed about none, is to stay within the margin."""
@@ -78,12 +82,12 @@ class Pilots:
 
     Args:
         scene: Whose velocity errors.
-        method: Whose twin.
+        family: Methods with one twin; those with few nodes tell the margin.
         clock: When its runs end, and how long their steps are.
         options: `keep`, `resume`, `tell`, ... of a study.
     """
 
-    def __init__(self, scene: Scene, method: Kinetic, clock: Fixed | Courant, **options: Any) -> None:
+    def __init__(self, scene: Scene, family: Sequence[Kinetic], clock: Fixed | Courant, **options: Any) -> None:
         self._options = options
         shares = levels(scene.cells.count)
         self._ahead = math.log2(1.0 / shares[-1])
@@ -92,11 +96,12 @@ class Pilots:
         self._sleeps = isinstance(clock, Fixed)
         self._found: dict[Kinetic, Array] = {}
         self._awake: dict[Kinetic, float] = {}
-        self._twin = method.twin
-        closed = self._run([Member(level.scene, method.twin, level.clock, SAME_STEPS) for level in self._levels])
+        self._twin = family[0].twin
+        closed = self._run([Member(level.scene, self._twin, level.clock, SAME_STEPS) for level in self._levels])
         self._of_twin = _awake(closed[-1])
         steps = max(record.figures.get("steps", 0) for record in closed)
         self.floor = float(np.finfo(float).eps) * steps / shares[-1]
+        self.margin = self._margin(family)
 
     def ask(self, methods: Sequence[Kinetic]) -> None:
         """Run the pilots of `methods` that were not run before."""
@@ -123,35 +128,47 @@ class Pilots:
         self._known |= dict(zip((one.key for one in new), collect(new, **self._options), strict=True))
         return [self._known[one.key] for one in members]
 
-    @property
-    def margin(self) -> float:
+    def _margin(self, family: Sequence[Kinetic]) -> float:
         """The factor that covers 97.5 percent of what velocity errors do from the finer pilots to the scene."""
-        errors = np.array(
-            [found for found in self._found.values() if np.isfinite(found).all() and found.min() > self.floor]
-        )
-        if not errors.size:
+        if not self._ahead:
             return 1.0
-        change = np.log(errors[:, -1] / errors[:, 0])
-        deviations = stdtrit(change.size, CONFIDENCE)  # Student's: few pilots tell a deviation with some doubt
-        return float(np.exp(self._ahead * deviations * np.sqrt(np.mean(change**2))))
+        kinds: dict[Any, list[Kinetic]] = {}
+        for method in sorted(family, key=nodes):
+            kinds.setdefault(kind_of(method), []).append(method)
+        self.ask([method for of in kinds.values() for method in of[:TELLING]])
+        changes = np.concatenate([self._changes(of) for of in kinds.values()])
+        if not changes.size:
+            return 1.0
+        deviations = stdtrit(changes.size, CONFIDENCE)  # Student's: few pilots tell a deviation with some doubt
+        return float(np.exp(self._ahead * deviations * np.sqrt(np.mean(changes**2))))
 
-    @property
-    def foretell(self) -> bool:
-        """Whether errors are foreseen, with the margin; else they are measured on all cells."""
-        return self._ahead > 0.0 and self.margin <= PROMISED
+    def _changes(self, ordered: Sequence[Kinetic]) -> Array:
+        """What the first of them do, in logarithms, whose pilots come to the end and show more than rounding."""
+        found: list[float] = []
+        for method in ordered:
+            self.ask([method])
+            coarse, fine = self._found[method]
+            if coarse > self.floor and fine > self.floor:
+                found.append(math.log(fine / coarse))
+            if len(found) == TELLING:
+                break
+        return np.array(found)
+
+    def foretells(self, method: Kinetic) -> bool:
+        """Whether its error is foreseen, with the margin; else it is measured on all cells."""
+        self.ask([method])
+        return self._ahead > 0.0 and self.margin**2 <= PROMISED and bool(np.isfinite(self._found[method]).all())
 
     def predicted(self, method: Kinetic) -> float:
-        """The velocity error of a run on all cells, at most, with a confidence of 97.5 percent; inf if a pilot failed.
+        """The velocity error of a run on all cells, at most, with a confidence of 97.5 percent; inf if that stops.
 
-        Where the pilots tell less than is promised it is measured on all cells.
+        Where the pilots tell less than is promised, or one of them stopped, it is measured on all cells.
         """
-        self.ask([method])
-        found = float(self._found[method][-1])
-        if not self.foretell and math.isfinite(found):
+        if not self.foretells(method):
             found = self._errors([self._whole], [method])[0].item()
-        elif found > self.floor:
-            found *= self.margin
-        return math.inf if math.isnan(found) else found
+            return math.inf if math.isnan(found) else float(found)
+        found = float(self._found[method][-1])
+        return found * self.margin if found > self.floor else found
 
     def awake(self, method: Kinetic) -> float:
         """The share of its cells that a run will step, as its finer pilot did; all with a `Courant` clock."""
@@ -159,13 +176,9 @@ class Pilots:
         share = self._awake[method]
         return share if self._sleeps and math.isfinite(share) else 1.0
 
-    def asked(self, method: Kinetic) -> bool:
-        """Whether its pilots were run."""
-        return method in self._found
-
     def keeps(self, method: Kinetic, accuracy: float) -> bool:
         """Whether a pilot was run, and says that the error will be below `accuracy`."""
-        return self.asked(method) and self.predicted(method) <= accuracy
+        return method in self._found and self.predicted(method) <= accuracy
 
     @property
     def least_awake(self) -> float:

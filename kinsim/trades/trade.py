@@ -80,6 +80,9 @@ def trade(
     if family is not None and not family:
         raise InputError("trade: the family is empty; give at least one choice")
     picked = list(family) if family is not None else chosen(method, lines)
+    for at, one in enumerate(picked):
+        if not isinstance(one, Choice):
+            raise InputError(f"trade: family[{at}] is a {type(one).__name__}; give kinsim.trades.family.Choice(...)")
     end, mass = clock.end, mass_of(scene, clock.end)
     options: dict[str, Any] = {"keep": keep, "resume": resume}
     paces: dict[Any, Fixed] = {}
