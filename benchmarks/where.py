@@ -9,13 +9,13 @@ import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from cases import Case, Step, stored
+from cases import Case, Step, bare, stored
 from fluxes import loop
 from native import Native, library
 from shell import SCENE, seconds
 from timing import interleave
 
-from kinsim import Macroscopic
+from kinsim import Fitted, Kinetic, Macroscopic
 
 COMPILED = """
 import sys, time
@@ -40,6 +40,25 @@ finally:
     print(clock.count, clock.spent)
 """
 
+READ = """
+import sys, time
+from numba.core.caching import Cache
+count, spent, load = 0, 0.0, Cache.load_overload
+def timed(*given):
+    global count, spent
+    began = time.process_time()
+    found = load(*given)
+    count, spent = count + 1, spent + time.process_time() - began
+    return found
+Cache.load_overload = timed
+sys.argv = ["kinsim", "run", sys.argv[1], "--quiet"]
+from kinsim.__main__ import main
+try:
+    main()
+finally:
+    print(count, spent)
+"""
+
 REGISTRIES = """
 import kinsim.kernel
 from numba.core.registry import cpu_target
@@ -52,7 +71,7 @@ STARTS = {
     "numpy": "import numpy",
     "numba": "import numba",
     "numba, and what it loads before the first kernel": REGISTRIES,
-    "kinsim, no kernel yet": "import kinsim.simulate, kinsim.overview, kinsim.progress",
+    "kinsim and its commands, no kernel yet": "import kinsim.cli, kinsim.simulate, kinsim.overview, kinsim.progress",
 }
 
 
@@ -60,6 +79,7 @@ def parts(quick: bool) -> Iterator[tuple[str, str]]:
     """What, and how long it takes."""
     yield from starts(2 if quick else 7)
     yield from steps(quick)
+    yield from least(quick)
 
 
 def starts(rounds: int) -> Iterator[tuple[str, str]]:
@@ -72,17 +92,31 @@ def starts(rounds: int) -> Iterator[tuple[str, str]]:
         for method in ("macroscopic", "kinetic"):
             scene = Path(folder) / f"{method}.toml"
             scene.write_text(SCENE.format(method=method), encoding="utf-8")
-            count, spent = compiled(scene, env)
+            env["KINSIM_CACHE_DIR"] = str(Path(folder) / method)
+            count, spent = counted(COMPILED, scene, env)
             yield f"cold start, {method}: {count} functions compiled", f"{spent:.2f} s"
+            count, spent = min((counted(READ, scene, env) for _ in range(rounds)), key=lambda found: found[1])
+            yield f"warm start, {method}: {count} kernels read from the disk", f"{spent:.2f} s"
 
 
-def compiled(scene: Path, env: dict[str, str]) -> tuple[int, float]:
-    """How many functions a run compiles with nothing on disk, and how long that takes."""
-    with tempfile.TemporaryDirectory() as cache:
-        asked = [sys.executable, "-c", COMPILED, str(scene)]
-        said = subprocess.run(asked, env={**env, "KINSIM_CACHE_DIR": cache}, capture_output=True, text=True, check=True)
+def counted(code: str, scene: Path, env: dict[str, str]) -> tuple[int, float]:
+    """How many functions the run of a scene compiles or reads, and how long that takes."""
+    said = subprocess.run([sys.executable, "-c", code, str(scene)], env=env, capture_output=True, text=True, check=True)
     count, spent = said.stdout.split()[-2:]
     return int(count), float(spent)
+
+
+def least(quick: bool) -> Iterator[tuple[str, str]]:
+    """Steps of hardly any cells or nodes: what does not grow with them, and bends the exponents."""
+    few, cells = Case.dam(10), Case.dam(200)
+    calls: dict[str, Callable[[], object]] = {
+        "10 cells: a step in closed form": Step(few, Macroscopic(1)),
+        "10 cells: a step of Fitted 6": Step(few, Kinetic(1, Fitted(6))),
+        "200 cells, 16 nodes: a step, window only": bare(cells, 16),
+        "200 cells, 16 nodes: a step, carried f": stored(cells, 16),
+    }
+    for what, times in interleave(calls, rounds=5 if quick else 15).items():
+        yield what, f"{1e6 * times.median:.3g} us"
 
 
 def steps(quick: bool) -> Iterator[tuple[str, str]]:
@@ -109,7 +143,7 @@ def steps(quick: bool) -> Iterator[tuple[str, str]]:
     case = Case.dam(50)
     for scheme in (1, 4):
         method = Macroscopic(scheme)  # type: ignore[arg-type]
-        alone = interleave({"": Step(case, method)}, rounds=9)[""].median
+        alone = interleave({"": Step(case, method)}, rounds=9)[""].all[0]
         whole = loop(case, method, 500 if quick else 2000)[0]
         yield f"50 cells, scheme {scheme}: the step itself", f"{1e6 * alone:.3g} us"
         yield f"50 cells, scheme {scheme}: the time loop around it", f"{1e6 * (whole - alone):.3g} us"

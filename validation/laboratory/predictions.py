@@ -20,7 +20,8 @@ def draw(told: np.ndarray, found: np.ndarray, family: Mapping[str, Sequence[obje
         axes.loglog(found[:, at].ravel(), told[:, at].ravel(), MARKS[number], color=COLOURS[number], markersize=4,
                     alpha=0.7, label=name)  # fmt: skip
         first += len(methods)
-    ends = np.array([np.nanmin(found), np.nanmax(found)])
+    ended = found[np.isfinite(found)]
+    ends = np.array([ended.min(), ended.max()])
     axes.plot(ends, ends, color="black", linewidth=1, label="predicted = measured")
     axes.fill_between(ends, ends, 10 * ends, color="black", alpha=0.07, label="a bound, by less than 10")
     axes.set(xlabel="velocity error measured on the full run", ylabel="predicted from pilot runs")
