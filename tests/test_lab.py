@@ -361,3 +361,19 @@ def test_bad_requests_are_told_in_a_line(tmp_path):
     fast = tmp_path / "fast.toml"
     fast.write_text(setup_of("silo", ("clock.number", 1.1)).toml(), encoding="utf-8")
     assert "take at most 1" in kinsim("lab", str(fast), code=2).stderr
+
+
+@pytest.mark.filterwarnings("ignore:Widget.name:PendingDeprecationWarning")  # its new name came after Panel 1.5
+def test_what_a_widget_of_a_scene_before_says_late_turns_nothing():
+    """Its key may be none of the scene that came after, and its value is not meant for it."""
+    from kinsim.lab.view.controls import Controls
+
+    turned = []
+    controls = Controls(lambda key, given: turned.append((key, given)))
+    controls.fit(Setup.of_scene("silo"))
+    _, before = controls._widgets["heap.heights.1"]
+    before.value = before.end
+    assert len(turned) == 1
+    controls.fit(Setup.of_scene("sine"))
+    before.value = before.start
+    assert len(turned) == 1

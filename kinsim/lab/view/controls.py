@@ -47,14 +47,16 @@ class Controls:
             parts.append(pn.pane.HTML(f"<b>{title}</b>", margin=(8, 10, 0, 10), height=20, sizing_mode="stretch_width"))
             for knob in knobs:
                 widget = _widget(knob, setup)
-                widget.param.watch(lambda event, knob=knob: self._moved(knob, event.new), "value")
+                widget.param.watch(lambda event, knob=knob: self._moved(knob, event), "value")
                 self._widgets[knob.key] = (knob, widget)
                 parts.append(widget)
         self.column.objects = parts
 
-    def _moved(self, knob: Knob, shown: Any) -> None:
-        if not self._quiet:
-            self._turn(knob.key, knob.given(shown) if isinstance(knob, Slider) else shown)
+    def _moved(self, knob: Knob, event: Any) -> None:
+        """What is moved turns its knob, but not the widget of a scene before, whose last move comes late."""
+        if self._quiet or self._widgets.get(knob.key, (knob, None))[1] is not event.obj:
+            return
+        self._turn(knob.key, knob.given(event.new) if isinstance(knob, Slider) else event.new)
 
 
 def _widget(knob: Knob, setup: Setup) -> Any:
