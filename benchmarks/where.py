@@ -32,31 +32,29 @@ class Clock(event.Listener):
         self.spent += time.process_time() - self.began if self.depth == 0 else 0.0
 clock = Clock()
 event.register("numba:compile", clock)
+"""
+
+READ = """
+import sys, time
+from numba.core.caching import Cache
+class Clock:
+    count, spent, load = 0, 0.0, Cache.load_overload
+clock = Clock()
+def timed(*given):
+    began = time.process_time()
+    found = Clock.load(*given)
+    clock.count, clock.spent = clock.count + 1, clock.spent + time.process_time() - began
+    return found
+Cache.load_overload = timed
+"""
+
+RUN = """
 sys.argv = ["kinsim", "run", sys.argv[1], "--quiet"]
 from kinsim.__main__ import main
 try:
     main()
 finally:
     print(clock.count, clock.spent)
-"""
-
-READ = """
-import sys, time
-from numba.core.caching import Cache
-count, spent, load = 0, 0.0, Cache.load_overload
-def timed(*given):
-    global count, spent
-    began = time.process_time()
-    found = load(*given)
-    count, spent = count + 1, spent + time.process_time() - began
-    return found
-Cache.load_overload = timed
-sys.argv = ["kinsim", "run", sys.argv[1], "--quiet"]
-from kinsim.__main__ import main
-try:
-    main()
-finally:
-    print(count, spent)
 """
 
 REGISTRIES = """
@@ -101,7 +99,9 @@ def starts(rounds: int) -> Iterator[tuple[str, str]]:
 
 def counted(code: str, scene: Path, env: dict[str, str]) -> tuple[int, float]:
     """How many functions the run of a scene compiles or reads, and how long that takes."""
-    said = subprocess.run([sys.executable, "-c", code, str(scene)], env=env, capture_output=True, text=True, check=True)
+    said = subprocess.run(
+        [sys.executable, "-c", code + RUN, str(scene)], env=env, capture_output=True, text=True, check=True
+    )
     count, spent = said.stdout.split()[-2:]
     return int(count), float(spent)
 

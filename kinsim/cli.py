@@ -277,13 +277,14 @@ def validate(
 @told()
 def check(name: Annotated[str, typer.Argument(metavar="FILE", help="A scene file, or a built-in scene.")]) -> None:
     """Validate a scene file, and print it with all that was filled in."""
-    from .overview import filled_in, first_courant
+    from .clock import first_courant
+    from .overview import filled_in
     from .read import check, read_keys
 
     keys = read_keys(name)
     file = check(keys, name)
     filled_in(file, keys)
-    if first_courant(file) > 1.0:
+    if first_courant(file.scene, file.clock) > 1.0:
         raise InputError(f"{name}: clock: the first step breaks the CFL bound (28); take a smaller one, or force it")
 
 
@@ -316,7 +317,7 @@ def _measured(chosen: Chosen | None, ran: Run) -> float:
     from .trades.choose import velocity_error
 
     measured = velocity_error(ran)
-    if math.isfinite(measured) and measured > chosen.accuracy:
+    if chosen.accuracy < measured < math.inf:
         told = f"the velocity error came to {measured:.2g}, above the {chosen.accuracy:.2g} asked for"
         typer.echo(f"{told}; ask for less, or take more nodes", err=True)
     return measured

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Protocol
 
 from pydantic import Field
 
 from .value import Number, Whole, kind, value
+
+if TYPE_CHECKING:
+    from .scene import Scene
 
 Positive = Annotated[Number, Field(gt=0)]
 
@@ -132,3 +135,8 @@ class Replay:
 
 
 AnyClock = Fixed | Courant | Replay
+
+
+def first_courant(scene: Scene, clock: Fixed | Courant) -> float:
+    """The Courant number of the first step, in closed form."""
+    return scene.fastest * clock.dt / scene.cells.dx if isinstance(clock, Fixed) else clock.number

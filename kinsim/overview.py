@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from .clock import Fixed
+from .clock import Fixed, first_courant
 from .read import SceneFile
 from .rooms import rooms
 
@@ -38,12 +38,6 @@ def room_list() -> None:
     Console().print(table)
 
 
-def first_courant(file: SceneFile) -> float:
-    """The Courant number of the first step, in closed form."""
-    clock = file.clock
-    return file.scene.fastest * clock.dt / file.cells.dx if isinstance(clock, Fixed) else clock.number
-
-
 def first_steps(file: SceneFile) -> float:
     """So many steps it takes, as far as the start tells."""
     clock = file.clock
@@ -66,7 +60,7 @@ def filled_in(file: SceneFile, keys: Mapping[str, Any]) -> None:
         ("dx", file.cells.dx),
         ("beta", file.beta),
         ("R", file.resistance),
-        ("Courant number of the first step", first_courant(file)),
+        ("Courant number of the first step", first_courant(file.scene, file.clock)),
     ):
         table.add_row(key, _figure(value), "[cyan]follows[/]")
     Console().print(table)

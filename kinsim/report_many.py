@@ -101,14 +101,12 @@ def accuracy_rows(chosen: Chosen | None, measured: float) -> list[tuple[str, str
     """What was picked and why, and what the velocity error came to be; nothing, if nothing was picked."""
     if chosen is None:
         return []
-    if np.isinf(measured):
-        return [("picked", escape(chosen.why)), ("velocity error", "[red]none to be measured: the run has no end[/]")]
     colour, word = ("green", "below") if measured <= chosen.accuracy else ("red", "above")
     told = f"{measured:.2g} measured against the twin, predicted at most {chosen.predicted:.2g}"
-    return [
-        ("picked", escape(chosen.why)),
-        ("velocity error", f"{told}; [{colour}]{word} the {chosen.accuracy:.2g} asked for[/]"),
-    ]
+    judged = f"{told}; [{colour}]{word} the {chosen.accuracy:.2g} asked for[/]"
+    if np.isinf(measured):
+        judged = "[red]none to be measured: the run, or its twin, did not come to the end[/]"
+    return [("picked", escape(chosen.why)), ("velocity error", judged)]
 
 
 def budget_report(found: Budget, name: str) -> None:

@@ -41,9 +41,11 @@ Progress = Callable[[float], None]
 REST_STEPS = 100
 """So many steps in a row without motion are called rest."""
 
-FORCED = ", or force it (--force, force=True)"
 ROUNDING = 1e-12
 """By so much a Courant number may pass 1: the rounding of its own computation."""
+
+FORCED = ", or force it (--force, force=True)"
+"""What else can be done about a step over the CFL bound, where a run can be forced."""
 
 
 LIFTED = "the mass left the ground, and the chute is strict; stopped"
@@ -252,10 +254,10 @@ class Loop:
                 return self.verdict("non-finite", f"the Courant number of dt = {dt:.4g} is not finite; stopped")
             if courant > stepper.limit * (1.0 + ROUNDING) and not self.force:
                 if self.step == 0:
-                    raise InputError(over_the_bound(courant, dt, speed, dx, clock, stepper.limit) + FORCED)
+                    raise InputError(over_the_bound(dt, speed, dx, clock, stepper.limit) + FORCED)
                 return self.verdict(
                     "cfl-broken",
-                    f"{over_the_bound(courant, dt, speed, dx, clock, stepper.limit)}{FORCED}; stopped",
+                    f"{over_the_bound(dt, speed, dx, clock, stepper.limit)}{FORCED}; stopped",
                 )
             self.reached = max(self.reached, reach)
             cut = self._cut(stepper.density, reach)
@@ -466,9 +468,9 @@ def _falling(scene: Scene, clock: AnyClock) -> float:
     return math.sqrt(0.5 * clock.number * scene.cells.dx * drive) if isinstance(clock, Courant) else 0.0
 
 
-def over_the_bound(courant: float, dt: float, speed: float, dx: float, clock: AnyClock, limit: float) -> str:
+def over_the_bound(dt: float, speed: float, dx: float, clock: AnyClock, limit: float) -> str:
     """That a step breaks the CFL bound, and what does not."""
-    allowed = limit * dx / speed
+    allowed, courant = limit * dx / speed, speed * dt / dx
     remedy = f"take dt <= {allowed:.4g}" if isinstance(clock, Fixed) else f"take a Courant number of at most {limit:g}"
     bound = "the CFL bound (28)" if limit == 1.0 else f"the CFL bound of order 2, {limit:g}"
     return f"dt = {dt:.4g} breaks {bound}: Courant number {courant:.4g}; {remedy}"

@@ -95,6 +95,8 @@ def test_steps_that_are_too_long_are_refused_as_a_run_does() -> None:
     for clock, remedy in ((Fixed(5.0, 3), r"dt <= 0\."), (Courant(1.3, 1.0), "a Courant number of at most 1")):
         with pytest.raises(InputError, match=rf"choose: dt = .* breaks the CFL bound \(28\): .*; take {remedy}"):
             choose(SILO, Kinetic(), clock, accuracy=1e-3)
+    with pytest.raises(InputError, match="take a heap, or a stream"):
+        choose(replace(SILO, heap=Blocks((), (0.0,))), Kinetic(), Courant(1.3, 1.0), accuracy=1e-3)
 
 
 def test_the_nearest_that_can_be_had_is_had() -> None:
@@ -116,7 +118,7 @@ def test_pilots_that_stop_have_the_error_measured(monkeypatch: pytest.MonkeyPatc
     assert not pilots.foretells(method)
     run = simulate(scene, method, clock)
     assert pilots.predicted(method) == velocity_error(run)
-    cut = replace(run, verdict=replace(run.verdict, kind="window-exceeded"))
+    cut = replace(run, verdict=replace(run.verdict, kind="window-too-small"))
     assert velocity_error(cut) == math.inf
     monkeypatch.setattr(Pilots, "_errors", lambda self, of, methods: (np.full((1, 1), math.nan), [math.nan]))
     assert pilots.predicted(method) == math.inf
@@ -136,6 +138,13 @@ def test_a_heap_that_fewer_cells_miss_is_averaged(count: int, width: float) -> N
             assert coarse.initial()[0].sum() * coarse.cells.dx == pytest.approx(mass, rel=1e-13)
     assert isinstance(finer(scene, 0.25).heap, Profile)
     assert choose(scene, Kinetic(), Courant(0.5, 0.2), accuracy=1e-2).predicted <= 1e-2
+
+
+def test_no_budget_is_made_of_a_run_that_stops() -> None:
+    """The fastest grains of the dam are outside the window."""
+    stops = r"budget: a run stops: step 1: velocities reach .*; take a scene and a method that come to the end"
+    with pytest.raises(InputError, match=stops):
+        budget(SILO, Kinetic(velocity=Uniform(64, 1.3)), Fixed(0.02, 60))
 
 
 @pytest.mark.parametrize("module", ["trades.choose", "trades.pace", "measure.compare"])

@@ -11,12 +11,11 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from ..clock import Fixed
+from ..clock import Fixed, first_courant
 from ..errors import InputError, line_of
 from ..method import Kinetic, unread
 from ..model.friction import Frictionless
 from ..model.heap import Blocks, Table
-from ..overview import first_courant
 from ..read import SceneFile, check, parse_keys, read_keys, take_method
 from ..simulate import ROUNDING
 from ..stepper import largest_courant, make_scheme
@@ -106,7 +105,7 @@ class Setup:
             make_scheme(file.method, file.scene)
         except (InputError, MemoryError) as error:
             return line_of(error)
-        limit, courant = largest_courant(file.method), first_courant(file)
+        limit, courant = largest_courant(file.method), first_courant(file.scene, file.clock)
         if courant <= limit * (1.0 + ROUNDING):
             return ""
         bound = "the CFL bound (28)" if limit == 1.0 else "the CFL bound of order 2"
@@ -120,7 +119,7 @@ class Setup:
         """
         file = self.file
         if key == "clock.number":
-            return first_courant(file)
+            return first_courant(file.scene, file.clock)
         if key == "clock.end":
             return file.clock.end
         if key == "friction.delta" and isinstance(file.friction, Frictionless):

@@ -10,16 +10,14 @@ import numpy as np
 
 from ..balance.stages import Array
 from ..clock import Courant, Fixed
-from ..errors import InputError
 from ..kinetic.velocity import Fitted, Uniform
 from ..method import Kinetic, Macroscopic
 from ..model.friction import Frictionless
-from ..run import ENDED
 from ..scene import Scene
 from ..studies.given import check_given
 from ..studies.study import study
 from .cost import ROUNDS, short_clock
-from .judge import mass_of
+from .judge import check_ended, mass_of
 from .pace import finer, steady, under_way
 from .pilot import OWN
 
@@ -117,9 +115,7 @@ def _both_orders(scene: Scene, end: float, options: dict[str, Any]) -> tuple[xar
     every = max(1, pace.steps // ROWS)
     orders = {"method": [method, Macroscopic(4, order=2)]}
     both = study(scene, method, pace, orders, fields=("h", "u"), save_every=every, **options)
-    for kind, verdict in zip(both["verdict_kind"].values, both["verdict"].values, strict=True):
-        if kind not in ENDED:
-            raise InputError(f"advise: the coarse run stops: {verdict}; take a scene that comes to its end")
+    check_ended(both, "advise: the coarse run", "take a scene that comes to its end")
     return both, float(np.abs(np.diff(both["h"].to_numpy(), axis=0)).sum()) * scene.cells.dx / mass
 
 

@@ -12,13 +12,12 @@ from ..clock import Courant, Fixed
 from ..errors import InputError
 from ..kinetic.velocity import Fitted, Window
 from ..method import Kinetic, Macroscopic
-from ..run import ENDED
 from ..scene import Scene
 from ..studies.given import check_given
 from ..studies.study import study
 from .choose import candidates
 from .cost import seconds_per_step
-from .judge import judge, mass_of
+from .judge import check_ended, judge, mass_of
 from .pace import steady, twin_of
 from .pilot import Pilots, kind_of, nodes, untold
 
@@ -97,9 +96,7 @@ def budget(scene: Scene, method: Kinetic | Macroscopic, clock: Fixed | Courant, 
         runs.append((exact, first))
     over = {"method": [one for one, _ in runs], "clock": [one for _, one in runs]}
     found = study(scene, method, first, over, paired=True, **options)
-    for kind, verdict in zip(found["verdict_kind"].values, found["verdict"].values, strict=True):
-        if kind not in ENDED:
-            raise InputError(f"budget: a run stops: {verdict}; take a scene and a method that come to the end")
+    check_ended(found, "budget: a run", "take a scene and a method that come to the end")
     h = found["h"].to_numpy()
     against = judge(scene, end, 1.0, **options)
     true = against.averages(scene.cells)

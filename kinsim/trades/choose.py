@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..clock import Courant, Fixed
+from ..clock import Courant, Fixed, first_courant
 from ..errors import InputError
 from ..interrupt import unless_interrupted
 from ..kinetic.velocity import Fitted, Uniform
@@ -121,11 +121,12 @@ def choose(
 
 
 def _check_steps(scene: Scene, method: Kinetic, clock: Fixed | Courant) -> None:
-    """The first step keeps the CFL bound; all pilots would break it, too."""
-    speed, dx, limit = scene.fastest, scene.cells.dx, largest_courant(method)
-    courant = clock.number if isinstance(clock, Courant) else speed * clock.dt / dx
+    """There is mass, and the first step keeps the CFL bound; all pilots would break it, too."""
+    mass_of(scene, clock.end)
+    courant, limit, dx = first_courant(scene, clock), largest_courant(method), scene.cells.dx
     if courant > limit * (1.0 + ROUNDING):
-        raise InputError(f"choose: {over_the_bound(courant, courant * dx / speed, speed, dx, clock, limit)}")
+        speed = scene.fastest
+        raise InputError(f"choose: {over_the_bound(courant * dx / speed, speed, dx, clock, limit)}")
 
 
 def _own(among: Any, method: Kinetic) -> list[Kinetic]:

@@ -16,7 +16,7 @@ from ..stepper import largest_courant
 from ..studies.study import study
 from .family import NUMBER
 from .pace import finer, under_way, varied
-from .pilot import kind_of, nodes
+from .pilot import by_kind, nodes
 
 TIMED_STEPS = 16
 ROUNDS = 5
@@ -40,10 +40,8 @@ def seconds_per_step(scene: Scene, methods: Sequence[Kinetic], **options: Any) -
     Of each kind the one with the fewest nodes, the one with the most and one in between are timed on all cells and on a
     quarter of them, in short runs that take turns; the others lie on the straight line in n through the least times.
     """
-    scene, kinds = under_way(scene), dict[Any, list[Kinetic]]()
-    for method in methods:
-        kinds.setdefault(kind_of(method), []).append(method)
-    telling = [method for of in kinds.values() for method in _telling(of)]
+    scene, kinds = under_way(scene), by_kind(methods)
+    telling = [method for of in kinds for method in _telling(of)]
     few = finer(scene, QUARTER)
     number = NUMBER * largest_courant(methods[0])
     over = {
@@ -57,7 +55,7 @@ def seconds_per_step(scene: Scene, methods: Sequence[Kinetic], **options: Any) -
     cells = np.clip((whole - part) / saved, 0.0, whole) if saved > 0.0 else np.zeros_like(whole)
     timed = dict(zip(telling, np.stack([whole - cells, cells], axis=1), strict=True))
     out: dict[Kinetic, Cost] = {}
-    for of in kinds.values():
+    for of in kinds:
         n, known = np.array([nodes(one) for one in _telling(of)]), np.array([timed[one] for one in _telling(of)])
         for one in of:
             out[one] = Cost(*(_line(n, column, nodes(one)) for column in known.T))
@@ -74,8 +72,7 @@ def _line(n: Array, seconds: Array, at: int) -> float:
 
 
 def _telling(of: Sequence[Kinetic]) -> list[Kinetic]:
-    ordered = sorted(of, key=nodes)
-    return list(dict.fromkeys([ordered[0], ordered[len(of) // 2], ordered[-1]]))
+    return list(dict.fromkeys([of[0], of[len(of) // 2], of[-1]]))
 
 
 def short_clock(scene: Scene, number: float) -> Courant:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,9 +14,13 @@ from ..macroscopic.half_moments import half_moments_closed
 from ..method import Macroscopic
 from ..model.boundary import Inflow, ends
 from ..model.cells import Cells
+from ..run import ENDED
 from ..scene import Scene
 from ..studies.study import study
 from .pace import finer, steady, varied
+
+if TYPE_CHECKING:
+    import xarray
 
 FINER = 4
 """The reference has so many times the cells of the finest method that it judges."""
@@ -86,6 +90,17 @@ def mass_of(scene: Scene, end: float) -> float:
     if not mass > 0.0:
         raise InputError("errors are measured in the mass, and none is there and none comes; take a heap, or a stream")
     return mass
+
+
+def check_ended(found: xarray.Dataset, what: str, remedy: str) -> None:
+    """All runs of a study came to the end.
+
+    Raises:
+        InputError: One was stopped; with its verdict and the remedy.
+    """
+    for kind, verdict in zip(found["verdict_kind"].values, found["verdict"].values, strict=True):
+        if kind not in ENDED:
+            raise InputError(f"{what} stops: {verdict}; {remedy}")
 
 
 def _coming(scene: Scene) -> float:

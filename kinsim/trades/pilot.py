@@ -12,7 +12,7 @@ few nodes tell the margin, always the same of a family, so that a prediction doe
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Self
 
@@ -132,11 +132,9 @@ class Pilots:
         """The factor that covers 97.5 percent of what velocity errors do from the finer pilots to the scene."""
         if not self._ahead:
             return 1.0
-        kinds: dict[Any, list[Kinetic]] = {}
-        for method in sorted(family, key=nodes):
-            kinds.setdefault(kind_of(method), []).append(method)
-        self.ask([method for of in kinds.values() for method in of[:TELLING]])
-        changes = np.concatenate([self._changes(of) for of in kinds.values()])
+        kinds = by_kind(family)
+        self.ask([method for of in kinds for method in of[:TELLING]])
+        changes = np.concatenate([self._changes(of) for of in kinds])
         if not changes.size:
             return 1.0
         deviations = stdtrit(changes.size, CONFIDENCE)  # Student's: few pilots tell a deviation with some doubt
@@ -222,3 +220,11 @@ def nodes(method: Kinetic) -> int:
 def kind_of(method: Kinetic) -> tuple[Any, ...]:
     """What methods share that differ in the number of nodes alone."""
     return type(method.velocity), method.equilibrium, method.force, method.projection
+
+
+def by_kind(methods: Iterable[Kinetic]) -> list[list[Kinetic]]:
+    """Methods of each kind, those with the fewest nodes first."""
+    kinds: dict[Any, list[Kinetic]] = {}
+    for method in sorted(methods, key=nodes):
+        kinds.setdefault(kind_of(method), []).append(method)
+    return list(kinds.values())

@@ -104,10 +104,10 @@ def _over(scene: Scene, family: Sequence[Choice], end: float, paces: dict[Any, F
     """The lists of a paired study."""
     scenes = [finer(scene, one.cells) for one in family]
     counts = [one.cells.count for one in scenes]
-    for one, count in zip(family, counts, strict=True):
-        asked = (twin_of(one.method), count, one.courant)
+    for one, its in zip(family, scenes, strict=True):
+        asked = (twin_of(one.method), its.cells.count, one.courant)
         if asked not in paces:
-            paces[asked] = steady(finer(scene, one.cells), one.method, one.courant, end)
+            paces[asked] = steady(its, one.method, one.courant, end)
     clocks = [paces[twin_of(one.method), count, one.courant] for one, count in zip(family, counts, strict=True)]
     return {"method": [one.method for one in family], **varied(scenes), "clock": clocks}
 
