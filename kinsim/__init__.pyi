@@ -3,6 +3,8 @@ from . import printed as printed
 from .checkpoint import Checkpoint as Checkpoint
 from .clock import Courant as Courant
 from .clock import Fixed as Fixed
+from .diagnostics.dump import Dump as Dump
+from .diagnostics.observer import Observer as Observer
 from .errors import InputError as InputError
 from .film.animate import animate as animate
 from .kinetic.velocity import Fitted as Fitted
@@ -39,15 +41,14 @@ from .run import Run as Run
 from .run import Verdict as Verdict
 from .scene import Scene as Scene
 from .simulate import simulate as simulate
+from .solver.step import Step as Step
+from .solver.step import step as step
 from .stability.atlas import atlas as atlas
-from .step import Step as Step
-from .step import step as step
 from .studies.study import study as study
 from .trades.advise import advise as advise
 from .trades.budget import budget as budget
 from .trades.choose import choose as choose
 from .trades.family import Choice as Choice
 from .trades.trade import trade as trade
-from .watch.dump import Dump as Dump
 
 __version__: str

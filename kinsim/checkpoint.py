@@ -55,8 +55,8 @@ class Keeper:
         self._next = time.monotonic() + self._every
         self.trouble = ""
 
-    def after_step(self, kept: Callable[[], Kept]) -> None:
-        """A step was taken, after which the run is as `kept()` says."""
+    def look(self, kept: Callable[[], Kept]) -> None:
+        """A block of steps was taken, after which the run is as `kept()` says."""
         if time.monotonic() >= self._next:
             self.put_down(kept())
             self._next = time.monotonic() + self._every
@@ -68,18 +68,6 @@ class Keeper:
             self.trouble = ""
         except InputError as error:
             self.trouble = f"checkpoint {error}"
-
-
-class Nowhere:
-    """Of a run that is not put down."""
-
-    trouble = ""
-
-    def after_step(self, kept: Callable[[], Kept]) -> None:
-        pass
-
-    def put_down(self, kept: Kept) -> None:
-        pass
 
 
 def _of_this_run(path: Path, about: Mapping[str, Any]) -> bool:

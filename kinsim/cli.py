@@ -28,12 +28,12 @@ from .shell import (
 from .stability.command import atlas
 
 if TYPE_CHECKING:
+    from .diagnostics.dump import Dump
     from .method import Kinetic, Macroscopic
     from .progress import Watched
     from .read import SceneFile
     from .run import Run
     from .trades.choose import Chosen
-    from .watch.dump import Dump
 
 app = typer.Typer(
     help="Run the Savage-Hutter equations with a particle density f(x, xi), or with its closed-form twin.",
@@ -334,9 +334,9 @@ def _picked(file: SceneFile, accuracy: float | None, grid: bool, progress: Watch
 
 def _final_density(method: Kinetic | Macroscopic, dumps: list[Dump]) -> list[Dump]:
     """The density after the force of the first and the last step, where there is one on a grid."""
+    from .diagnostics.dump import Dump
     from .kinetic.velocity import Fitted
     from .method import Kinetic
-    from .watch.dump import Dump
 
     if isinstance(method, Kinetic) and not isinstance(method.velocity, Fitted):
         taken = any(dump.name == "f" for dump in dumps)

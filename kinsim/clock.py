@@ -16,7 +16,7 @@ Positive = Annotated[Number, Field(gt=0)]
 
 
 class Clock(Protocol):
-    """Gives the next step from the time and the fastest particle; None when the run is over."""
+    """Says when the states are; the march takes the steps."""
 
     @property
     def end(self) -> float:
@@ -26,9 +26,6 @@ class Clock(Protocol):
     def stop_at_rest(self) -> bool:
         """Whether a mass that came to rest ends the run."""
 
-    def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None: ...
-    def time_after(self, step: int, t: float, dt: float) -> float: ...
-    def progress(self, step: int, t: float) -> float: ...
     def steps_at(self, speed: float, dx: float) -> int:
         """How many steps are foreseen if the fastest particle stays as fast as `speed`."""
 
@@ -51,17 +48,10 @@ class Fixed:
         """The time after the last step."""
         return self.steps * self.dt
 
-    def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
-        """dt, `steps` times."""
-        return self.dt if step < self.steps else None
-
-    def time_after(self, step: int, t: float, dt: float) -> float:
-        """The time after step number `step`, without summed rounding."""
-        return step * self.dt
-
-    def progress(self, step: int, t: float) -> float:
-        """The share that is done."""
-        return step / self.steps
+    @property
+    def ticks(self) -> int:
+        """Planned steps."""
+        return self.steps
 
     def steps_at(self, speed: float, dx: float) -> int:
         """All."""
@@ -84,27 +74,9 @@ class Courant:
     most: Annotated[Whole, Field(ge=1)] = 10_000_000
     kind: Literal["courant"] = kind("courant")
 
-    def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
-        """number dx / speed, or what is left until the end."""
-        left = self.end - t
-        if left <= 0.0:
-            return None
-        dt = self.number * dx / speed if speed > 0.0 else math.inf
-        while dt / dx * speed > self.number:  # by rounding
-            dt = math.nextafter(dt, 0.0)
-        return left if dt >= left else dt
-
-    def time_after(self, step: int, t: float, dt: float) -> float:
-        """t + dt, and the end exactly after the last step."""
-        return self.end if dt >= self.end - t else t + dt
-
-    def progress(self, step: int, t: float) -> float:
-        """The share that is done."""
-        return t / self.end
-
     def steps_at(self, speed: float, dx: float) -> int:
         """The time over the length of a step, at most `most`."""
-        dt = self.next_dt(0, 0.0, speed, dx) or self.end
+        dt = min(self.number * dx / speed, self.end) if speed > 0.0 else self.end
         return math.ceil(min(self.end / dt, self.most)) if dt > 0.0 else self.most
 
 
@@ -117,17 +89,10 @@ class Replay:
     kind: Literal["replay"] = kind("replay")
     stop_at_rest: ClassVar[bool] = False
 
-    def next_dt(self, step: int, t: float, speed: float, dx: float) -> float | None:
-        """The other run's step."""
-        return self.dts[step] if step < len(self.dts) else None
-
-    def time_after(self, step: int, t: float, dt: float) -> float:
-        """t + dt, and the end exactly after the last step."""
-        return self.end if step == len(self.dts) else t + dt
-
-    def progress(self, step: int, t: float) -> float:
-        """The share that is done."""
-        return step / len(self.dts)
+    @property
+    def ticks(self) -> int:
+        """Planned steps."""
+        return len(self.dts)
 
     def steps_at(self, speed: float, dx: float) -> int:
         """All."""

@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, WrapSerializer
+from pydantic.json_schema import SkipJsonSchema
 
-from .balance.scheme4 import Limiter
-from .balance.schemes import Coupling
-from .kinetic.equilibrium import EQUILIBRIA, EquilibriumName
-from .kinetic.force import ForceName
-from .kinetic.project import ProjectionName
-from .kinetic.velocity import Fitted, Uniform, Velocity, Window
-from .value import kind, value
+from .kinetic.velocity import Fitted, Uniform, Velocity
+from .value import described_outside, kind, value
 
 NoFlag = BeforeValidator(lambda given: str(given) if isinstance(given, bool) else given)
 """True is 1 to Python, and no scheme."""
@@ -22,6 +18,28 @@ SchemeNumber = Annotated[Literal[1, 2, 3, 4], NoFlag]
 Order = Annotated[Literal[1, 2], NoFlag]
 
 Statics = Literal["hold", "reflect"]
+
+Coupling = Literal["cell", "face"]
+
+Limiter = Literal["minmod", "between", "mc"]
+
+LIMITERS: dict[Limiter, float] = {"minmod": 1.0, "between": 1.2, "mc": 2.0}
+"""How many times the smaller one of two differences a slope may be."""
+
+EquilibriumName = Literal["cell-average", "sampled", "matched", "entropic"]
+
+NODES: dict[EquilibriumName, int] = {"cell-average": 2, "sampled": 2, "matched": 4, "entropic": 4}
+"""Velocity cells that each equilibrium needs at least."""
+
+ForceName = Literal["shift-linear", "shift-exact", "shift-pfc", "derivative-upwind", "derivative-centred"]
+
+ProjectionName = Literal["flux-difference", "re-summed"]
+
+
+def _flux(given: Any) -> Any:
+    if given is not None and not callable(given):
+        raise ValueError(f"flux = {given!r} is no function; give flux(h_left, u_left, h_right, u_right, beta) -> (F1, F2)")
+    return given
 
 
 @value
@@ -35,6 +53,7 @@ class Macroscopic:
         order: Of scheme 4: 1, or 2 in space and time.
         limiter: Of order 2: "minmod", "between", or "mc", the sharpest, which ripples at strong shocks.
         statics: Of order 1 of scheme 4: faces that friction can hold "hold" back density, or "reflect" particles.
+        flux: A numerical flux of one's own, flux(h_left, u_left, h_right, u_right, beta) -> (F1, F2), in place of (24).
     """
 
     scheme: SchemeNumber = 4
@@ -42,10 +61,13 @@ class Macroscopic:
     order: Order = 1
     limiter: Limiter = "between"
     statics: Statics = "hold"
+    flux: SkipJsonSchema[Annotated[Any, BeforeValidator(_flux), WrapSerializer(described_outside)]] = None
     kind: Literal["macroscopic"] = kind("macroscopic")
 
     def __post_init__(self) -> None:
         _check_scheme(self)
+        if self.flux is not None and self.statics == "reflect":
+            raise ValueError("flux of one's own with statics 'reflect': it has no half-range moments; take 'hold'")
 
 
 @value
@@ -79,13 +101,6 @@ class Kinetic:
 
     def __post_init__(self) -> None:
         _check_scheme(self)
-        if self.order == 2 and isinstance(self.velocity, Window):
-            raise ValueError("order 2 takes its two stages on one grid; take uniform or fitted nodes, not a window")
-        if self.order == 2 and (self.projection != "flux-difference" or self.force == "shift-exact"):
-            raise ValueError(
-                "order 2 averages densities on one grid; take projection 'flux-difference' and another force than "
-                "'shift-exact', which moves the nodes"
-            )
         plain = ("cell-average", "shift-linear", "flux-difference")
         if isinstance(self.velocity, Fitted):
             if (self.equilibrium, self.force, self.projection) != plain:
@@ -93,7 +108,7 @@ class Kinetic:
                     "fitted nodes carry M itself; leave equilibrium, force and projection at their defaults"
                 )
         elif isinstance(self.velocity, Uniform):
-            least = EQUILIBRIA[self.equilibrium].least
+            least = NODES[self.equilibrium]
             if self.velocity.count < least:
                 raise ValueError(
                     f"equilibrium {self.equilibrium!r} needs at least {least} velocity cells, got {self.velocity.count}"

@@ -9,9 +9,9 @@ from __future__ import annotations
 from math import asin, cos, pi, sin, sqrt
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Array = NDArray[np.float64]
+from .arrays import Array
 
 
 def flux(

@@ -12,12 +12,12 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, TypeAdapter, ValidationError
 
 from .clock import Courant, Fixed
+from .diagnostics.dump import Dump
 from .errors import InputError
 from .finding import one_line
 from .method import Kinetic, Macroscopic, Method
 from .scene import Scene
 from .value import value
-from .watch.dump import Dump
 
 BUILT_IN = Path(__file__).parent / "scenes"
 

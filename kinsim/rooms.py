@@ -5,12 +5,10 @@ from __future__ import annotations
 import inspect
 from typing import Any, NamedTuple, get_args
 
-from .balance.scheme4 import Held, HeldSloped, Reflecting
-from .balance.schemes import Scheme1, Scheme2, Scheme3Cell, Scheme3Face
 from .clock import Courant, Fixed
 from .kinetic.equilibrium import EQUILIBRIA
 from .kinetic.force import FORCES
-from .kinetic.project import PROJECTIONS
+from .kinetic.rows import FluxDifference, Resummed
 from .kinetic.velocity import Velocity
 from .method import Kinetic, Macroscopic
 from .model.boundary import EXPLAINED
@@ -18,6 +16,13 @@ from .model.chute import ConstantSlope, SmoothChute
 from .model.friction import Friction
 from .model.heap import Heap
 from .model.slope import Slope
+from .schemes.order import Second
+from .schemes.reflecting import Reflecting
+from .schemes.scheme1 import Upwind
+from .schemes.scheme4 import Held
+from .schemes.scheme23 import Balanced, CoupledByCell, CoupledByFace
+
+PROJECTIONS = {"flux-difference": FluxDifference, "re-summed": Resummed}
 
 
 class Room(NamedTuple):
@@ -31,8 +36,8 @@ class Room(NamedTuple):
 def rooms() -> list[Room]:
     """All variants, family by family."""
     schemes: dict[str, type] = {
-        "1": Scheme1, "2": Scheme2, "3, coupling cell": Scheme3Cell, "3, coupling face": Scheme3Face,
-        "4": Held, "4, order 2": HeldSloped, "4, statics reflect": Reflecting,
+        "1": Upwind, "2": Balanced, "3, coupling cell": CoupledByCell, "3, coupling face": CoupledByFace,
+        "4": Held, "4, order 2": Second, "4, statics reflect": Reflecting,
     }  # fmt: skip
     return [
         *_by_kind("chute.kind", ConstantSlope, SmoothChute),
@@ -46,13 +51,14 @@ def rooms() -> list[Room]:
         *_by_kind("method.velocity.kind", *_variants(Velocity)),
         *(Room("method.equilibrium", name, _first_line(type(room))) for name, room in EQUILIBRIA.items()),
         *(Room("method.force", name, _first_line(type(room))) for name, room in FORCES.items()),
-        *(Room("method.projection", name, _first_line(type(room))) for name, room in PROJECTIONS.items()),
+        *(Room("method.projection", name, _first_line(room)) for name, room in PROJECTIONS.items()),
     ]
 
 
 def _variants(family: Any) -> tuple[Any, ...]:
     """The members of an annotated union."""
-    return get_args(get_args(family)[0])
+    inner = get_args(family)[0]
+    return get_args(get_args(inner)[0]) if get_args(get_args(inner)[0]) else get_args(inner)
 
 
 def _by_kind(key: str, *kinds: Any) -> list[Room]:

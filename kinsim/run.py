@@ -10,51 +10,24 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pydantic import TypeAdapter
 
-from .balance.stages import Array
+from .arrays import Array
 from .clock import Clock, Replay
+from .diagnostics.endings import ENDED, Verdict, VerdictKind
+from .diagnostics.ledger import EVERY_COLUMN
 from .mean import mean_velocity
 from .method import Kinetic, Macroscopic
 from .scene import Scene
 from .store import write_netcdf
-from .watch.ledger import EVERY_COLUMN
 
 if TYPE_CHECKING:
     import xarray
 
-VerdictKind = Literal[
-    "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "lifted-off", "too-many-steps", "refused",
-    "interrupted",
-]  # fmt: skip
-
-ENDED: tuple[VerdictKind, ...] = ("finished", "at-rest")
-"""Kinds of runs that came to their end."""
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """How a run ended; `str` says it in human words.
-
-    Attributes:
-        kind: "finished", "at-rest", "non-finite", "cfl-broken", "window-too-small", "lifted-off", "too-many-steps",
-            "refused" (a step asks for what cannot be had) or "interrupted".
-        message: One sentence.
-        step: Number of the last step kept.
-        cell: The cell at fault, if one is.
-    """
-
-    kind: VerdictKind
-    message: str
-    step: int
-    cell: int | None = None
-
-    def __str__(self) -> str:
-        return self.message
-
+__all__ = ["ENDED", "Run", "Verdict", "VerdictKind", "describe", "description"]
 
 @dataclass(frozen=True, eq=False)
 class Run:
@@ -67,10 +40,11 @@ class Run:
         dt: Length of every step, shape (steps,).
         entries: Ledger columns, each of shape (nt,).
         dumps: Densities that were asked for, by name.
-        causes: The moment ledger, if it was asked for; see `kinsim.watch.causes`.
+        causes: The moment ledger, if it was asked for; see `kinsim.diagnostics.causes`.
         verdict: How it ended.
         wall_time: Seconds spent in the time loop, compiling excluded.
-        awake: Share of the cells, over all steps, that were stepped; the others slept.
+        awake: Share of the cells, over all steps, that were stepped; the others rested.
+        observed: What observers of one's own noted, by their names.
     """
 
     scene: Scene
@@ -86,6 +60,7 @@ class Run:
     awake: float = 1.0
     dumps: Mapping[str, xarray.DataArray] = field(default_factory=dict)
     causes: xarray.Dataset | None = None
+    observed: Mapping[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return (
@@ -115,7 +90,7 @@ class Run:
 
     @cached_property
     def ledger(self) -> xarray.Dataset:
-        """The books over the saved times; see `kinsim.watch.ledger` for the columns."""
+        """The books over the saved times; see `kinsim.diagnostics.ledger` for the columns."""
         import xarray
 
         columns = {name: ("t", column, _attrs(EVERY_COLUMN[name])) for name, column in self.entries.items()}

@@ -11,12 +11,11 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from .errors import InputError
-from .local import Local
 from .mean import mean_velocity
 from .model.boundary import Boundary, streams
 from .model.cells import TINY, Cells
 from .model.chute import Chute, ConstantSlope
-from .model.friction import Friction, Frictionless
+from .model.friction import Friction, Frictionless, held_by
 from .model.ground import Flat, Ground, Smooth
 from .model.heap import Heap
 from .value import Number, value
@@ -64,21 +63,22 @@ class Scene:
         """What chute and friction are to a scheme."""
         scale, law, dx = self.epsilon * self.k, self.friction, self.cells.dx
         if isinstance(self.chute, ConstantSlope):
-            return Flat(self.chute.sin, float(law.resistance(self.chute)), scale * self.chute.cos, dx)
+            cos = self.chute.cos
+            return Flat(self.chute.sin, cos, held_by(law, cos), scale * cos, dx)
         return Smooth.of(self.chute, law, scale, self.cells, self.boundary)
 
     @property
-    def beta(self) -> Local:
+    def beta(self) -> float | NDArray[np.float64]:
         """beta = epsilon k cos zeta of (1), (13); shape (nx,) on a smooth chute."""
         return self.ground.beta
 
     @property
-    def pull(self) -> Local:
+    def pull(self) -> float | NDArray[np.float64]:
         """sin zeta; shape (nx,) on a smooth chute."""
         return self.ground.pull
 
     @property
-    def resistance(self) -> Local:
+    def resistance(self) -> float | NDArray[np.float64]:
         """R of Definition 1 of a mass at rest; the force of friction lies in [-R, R]; shape (nx,) on a smooth chute."""
         return self.ground.hold
 

@@ -6,9 +6,19 @@ adds the two number types that a scene file knows.
 
 from __future__ import annotations
 
+import hashlib
+import inspect
 from typing import Annotated, Any, TypeVar, dataclass_transform
 
-from pydantic import BeforeValidator, ConfigDict, Field, Strict, TypeAdapter, ValidationError
+from pydantic import (
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    SerializerFunctionWrapHandler,
+    Strict,
+    TypeAdapter,
+    ValidationError,
+)  # fmt: skip
 from pydantic.dataclasses import dataclass as validated_dataclass
 
 from .errors import InputError
@@ -60,6 +70,27 @@ def checked(place: str, family: Any, given: Any) -> Any:
         return TypeAdapter(family, config=ConfigDict(allow_inf_nan=False)).validate_python(given)
     except ValidationError as error:
         raise InputError(one_line(error, place, family)) from None
+
+
+def described_outside(given: Any, write: SerializerFunctionWrapHandler) -> Any:
+    """A part as keys and values; one from outside of the package by its class, its numbers and a hash of its source."""
+    plain = isinstance(given, (int, float, str, type(None)))
+    if plain or (type(given).__module__.startswith("kinsim.") and not callable(given)):
+        return write(given)
+    own = given if callable(given) and hasattr(given, "__qualname__") else type(given)
+    told = {"outside": f"{own.__module__}.{own.__qualname__}", "source": source_hash(own)}
+    return told | ({} if own is given else {"numbers": repr(given)})
+
+
+def source_hash(part: Any) -> str:
+    """A hash of the source of a class or function; of its compiled code where there is no source."""
+    part = getattr(part, "py_func", part)
+    try:
+        text = inspect.getsource(part).encode()
+    except (OSError, TypeError):
+        codes = [part] if hasattr(part, "__code__") else list(vars(part).values())
+        text = b"".join(code.__code__.co_code + repr(code.__code__.co_consts).encode() for code in codes if hasattr(code, "__code__"))
+    return hashlib.sha256(text).hexdigest()
 
 
 def kind(name: str) -> Any:

@@ -10,13 +10,13 @@ from numbers import Real
 from typing import Annotated, Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from pydantic import Field
 
+from ..arrays import Array
 from ..errors import InputError
 from ..value import Number
 
-Array = NDArray[np.float64]
 NonNegative = Annotated[Number, Field(ge=0)]
 Positive = Annotated[Number, Field(gt=0)]
 

@@ -8,12 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..errors import InputError
-from ..local import Local
 from ..model.cells import Cells
-from ..model.chute import Incline, SmoothChute
-from ..model.friction import FrictionLaw
+from ..model.chute import SmoothChute
+from ..model.friction import Friction, formula_of
 from .quadrature import averages
 
 
@@ -23,7 +22,7 @@ class SteadyStream:
 
     With h = q/u, (13) is (q u + beta q^2/(2 u^2))' = g q/u, so that
 
-        u' = (g/u - beta' q/(2 u^2))/(1 - beta q/u^3),   g = sin zeta - R(cos zeta + eta kappa u^2).
+        u' = (g/u - beta' q/(2 u^2))/(1 - beta q/u^3),   g = sin zeta - r(h, |u|, cos zeta + eta kappa u^2).
 
     Attributes:
         chute: The ground.
@@ -35,7 +34,7 @@ class SteadyStream:
     """
 
     chute: SmoothChute
-    friction: FrictionLaw
+    friction: Friction
     scale: float
     discharge: float
     u: float
@@ -77,9 +76,9 @@ class SteadyStream:
     def _slope(self, x: Array, u: Array) -> Array:
         zeta, rise = self.chute.zeta(x)
         beta, beta_rise = self.scale * np.cos(zeta), -self.scale * np.sin(zeta) * rise
-        normal: Local = np.maximum(np.cos(zeta) - self.chute.eta * rise * u * u, 0.0)
-        g = np.sin(zeta) - self.friction.resistance(Incline(normal))
+        normal = np.maximum(np.cos(zeta) - self.chute.eta * rise * u * u, 0.0)
         q = self.discharge
+        g = np.sin(zeta) - np.vectorize(formula_of(self.friction))(q / u, np.abs(u), normal)
         return np.asarray((g / u - beta_rise * q / (2.0 * u * u)) / (1.0 - beta * q / u**3))
 
     def margin(self, x: float, u: float) -> float:

@@ -11,16 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from ..balance.stages import Array
+from ..arrays import Array, Local
+from ..diagnostics.dump import LONG_NAMES
 from ..kinetic.velocity import Fitted
-from ..local import Local
 from ..measure.compare import method_name
 from ..memory import require
 from ..method import Kinetic, Macroscopic
 from ..run import Run
 from ..scene import Scene
 from ..value import Whole, checked
-from ..watch.dump import LONG_NAMES
 
 if TYPE_CHECKING:
     import xarray

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from ..clock import AnyClock, Courant
+from ..diagnostics.dump import Dump
 from ..interrupt import unless_interrupted
 from ..kinetic.velocity import Uniform
 from ..memory import require
@@ -13,7 +14,6 @@ from ..overview import first_steps
 from ..read import SceneFile
 from ..run import Run
 from ..simulate import Progress, simulate
-from ..watch.dump import Dump
 from .reel import carries
 
 

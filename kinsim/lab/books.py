@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
+from ..diagnostics.causes import STAGES
 from ..measure.entropy import of_state
-from ..watch.causes import STAGES
 from .play import Play
 
 COLUMNS = ("mass", "momentum", "entropy")
-"""Of the four quantities of `kinsim.watch.causes`, those that the page shows."""
+"""Of the four quantities of `kinsim.diagnostics.causes`, those that the page shows."""
 
 TOLD = {
     "sampling": "M put on the nodes",
@@ -54,12 +54,12 @@ class Ledger:
 
     def books(self) -> Books:
         """After the last whole step."""
-        loop = self._play.loop
+        loop = self._play.simulation
         causes: dict[str, Array] = {}
         if loop.causes is not None:
             summed = loop.causes.kept()["sum"]
             causes = {TOLD[name]: row[[0, 1, 3]] for name, row in zip(STAGES, summed, strict=True)}
-        return Books(self.start, self._of(loop.h, loop.q), causes)
+        return Books(self.start, self._of(loop.solver.h, loop.solver.q), causes)
 
     def _of(self, h: Array, q: Array) -> Array:
         """Integrals over x of h, q and q^2/(2h) + beta h^2/2."""

@@ -10,14 +10,13 @@ from typing import Literal
 import numpy as np
 
 from .. import printed
-from ..balance.stages import Array
+from ..arrays import Array
 from ..film.reel import equilibrium
-from ..kinetic.equilibrium import EQUILIBRIA
+from ..kinetic.equilibrium import weights
 from ..kinetic.velocity import Grid
-from ..local import at, varies
-from ..macroscopic.half_moments import half_moments_closed
+from ..macroscopic.closed_form import half_moments_closed
 from ..method import Kinetic
-from ..step import step
+from ..solver.step import step
 from .play import Moment, Play
 
 FaceStates = Literal["upwind", "balanced", "held"]
@@ -96,12 +95,12 @@ def cut_at(play: Play, moment: Moment, cell: int, states: FaceStates = "upwind")
     left = min(cell, scene.cells.count - 2)
     h, u = _face_states(play, moment, left, states)
     beta = np.broadcast_to(scene.beta, scene.cells.count)[left : left + 2]
-    sides = (beta[:1].copy(), beta[1:].copy()) if varies(scene.beta) else scene.beta
+    sides = (beta[:1].copy(), beta[1:].copy())
     rows = play.face_rows(h[:1], u[:1], h[1:], u[1:], sides)
     edges: Array = grid.dxi * (np.arange(grid.count + 1.0) - grid.half)
     curve = np.linspace(edges[0], edges[-1], LINE)
     here, mean = moment.h[cell : cell + 1], np.nan_to_num(moment.u[cell : cell + 1])
-    M = equilibrium(here, mean, at(scene.beta, cell), curve)[0]
+    M = equilibrium(here, mean, float(np.broadcast_to(scene.beta, scene.cells.count)[cell]), curve)[0]
     return Cut(
         cell=cell, x=float(scene.x[cell]), edges=edges + moment.offset[cell], f=moment.f[cell], xi=curve,
         M=M, face_x=scene.cells.left + (left + 1) * scene.cells.dx,
@@ -124,7 +123,7 @@ def _face_states(play: Play, moment: Moment, left: int, states: FaceStates) -> t
 def _halves(
     play: Play, row: Array, grid: Grid, h: Array, u: Array, beta: Array, states: FaceStates
 ) -> tuple[Half, ...]:
-    w1, w2 = EQUILIBRIA[play.method.equilibrium].weights(grid)
+    w1, w2 = weights(play.method.equilibrium, grid)
     positive, negative = row[grid.half :], row[: grid.half][::-1]
     summed = (w1 @ positive, -(w1 @ negative), w2 @ positive, w2 @ negative)
     left, right = (half_moments_closed(float(h[k]), float(u[k]), float(beta[k])) for k in (0, 1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..kinetic.velocity import Grid
 from .play import Moment, Play
 

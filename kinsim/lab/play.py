@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
+from ..diagnostics.dump import SHOWN
+from ..diagnostics.history import Cadence
 from ..errors import InputError
 from ..exact.of_scene import exact_of
-from ..kinetic.equilibrium import Status
-from ..kinetic.wing import Density
-from ..local import Sides
+from ..kinetic.equilibrium import fill
 from ..mean import mean_velocity
 from ..method import Kinetic, Macroscopic
 from ..model.ground import Flat
 from ..read import SceneFile
 from ..run import Verdict
 from ..scene import Scene
-from ..simulate import Loop, find_bound
-from ..stepper import make_stepper
-from ..watch.dump import SHOWN, Dump
+from ..simulate import Simulation, find_bound
+from ..solver.density import Density
+from ..solver.solver import Solver
+from ..solver.stages import Stages
 
 Stage = Literal["transport", "force", "projection"]
 
@@ -67,14 +68,12 @@ class Twin:
     def __init__(self, scene: Scene, method: Macroscopic) -> None:
         self.h, self.q = scene.initial()
         self.qhat = self.q
-        self._stepper = make_stepper(scene, method)
+        self._solver = Solver(scene, method)
 
     def follow(self, dt: float) -> None:
         """Take a step of this length."""
-        now = self._stepper.now
-        self._stepper.begin(self.h, self.q)
-        self._stepper.advance(dt)
-        self.h, self.q, self.qhat = now.h1.copy(), now.q1.copy(), now.qhat.copy()
+        stages = self._solver.stages(self.h, self.q, dt)
+        self.h, self.q, self.qhat = stages["h1"], stages["q1"], stages["qhat"]
 
 
 class Play:
@@ -95,22 +94,37 @@ class Play:
         self.exact = exact_of(self.scene)
         self.verdict: Verdict | None = None
         self.twin = Twin(self.scene, self.method.twin)
-        self.loop = Loop(self.scene, self.method, file.clock, save_every=NEVER, force=False)
-        told_apart = self.loop.stepper.limit == 1.0 and isinstance(self.scene.ground, Flat)
-        self.loop.watch([Dump(every=NEVER)], causes=told_apart)
-        self.loop.start()
-        self._steps = self.loop.steps()
+        told_apart = self.method.order == 1 and isinstance(self.scene.ground, Flat)
+        cadence = Cadence(file.clock, NEVER, None, None)
+        self.simulation = Simulation(self.scene, self.method, file.clock, cadence, causes=told_apart)
+        self.simulation.start()
+        self.verdict = self.simulation.verdict
+
+    @property
+    def solver(self) -> Solver:
+        """Where the run stands."""
+        return self.simulation.solver
+
+    @property
+    def stages(self) -> Stages:
+        """The last step, or before any one that nobody takes."""
+        solver = self.solver
+        return solver.last_stages if solver.step else solver.stages(solver.h, solver.q, 1e-3 * self.scene.cells.dx)
 
     @property
     def density(self) -> Density:
         """The density, at all stages of the last step."""
-        assert self.loop.stepper.density is not None
-        return self.loop.stepper.density
+        return self.stages.density
+
+    def takes_balanced(self, cell: int) -> bool:
+        """Whether a cell took the balanced face (25) at its right wall in the last step of scheme 3."""
+        slow = self.stages["slow"]
+        return bool(slow[cell]) and (self.method.coupling == "cell" or bool(slow[cell + 1]))
 
     @property
     def step(self) -> int:
         """Whole steps so far."""
-        return self.loop.step
+        return self.solver.step
 
     @property
     def end(self) -> float:
@@ -122,12 +136,13 @@ class Play:
         """Take a whole step; False if the run is over."""
         if self.verdict is not None:
             return False
-        try:
-            next(self._steps)
-        except StopIteration as end:
-            self.verdict = end.value
+        before = self.step
+        if self.simulation.verdict is None:
+            self.simulation.advance(1)
+        if self.step == before:
+            self.verdict = self.simulation.verdict
             return False
-        self.twin.follow(self.loop.dts[-1])
+        self.twin.follow(float(self.simulation.dts[-1][-1]))
         return True
 
     def next_stage(self) -> bool:
@@ -143,22 +158,22 @@ class Play:
     @np.errstate(all="ignore")
     def moment(self) -> Moment:
         """What is to be seen now; arrays of its own."""
-        loop, now, twin = self.loop, self.loop.stepper.now, self.twin
+        solver, twin = self.solver, self.twin
         stage: Stage = self.stage if self.step and self.verdict is None else "projection"
-        h, q, twin_q, offset = loop.h, loop.q, twin.q, np.zeros_like(loop.h)
+        h, q, twin_q, offset = solver.h, solver.q, twin.q, np.zeros_like(solver.h)
         face_h, face_u = h, mean_velocity(q, h)
         if stage == "projection":
             f = self.equilibrium(h, mean_velocity(q, h))
         else:
-            f = SHOWN[stage](self.density, now)
-            face_h, face_u = now.h[1:-1], now.u[1:-1]
+            f = SHOWN[stage](self.density)
+            face_h, face_u = self.stages["h"], self.stages["u"]
         if stage == "transport":
-            q, twin_q = now.qhat, twin.qhat
+            q, twin_q = self.stages["qhat"], twin.qhat
         if stage == "force":
             offset = self.density.offset
-        exact = (None, None) if stage == "transport" else self._exact(loop.t)
+        exact = (None, None) if stage == "transport" else self._exact(solver.t)
         return Moment(
-            step=self.step, t=loop.t, stage=stage, h=h.copy(), u=_seen(q, h),
+            step=self.step, t=solver.t, stage=stage, h=h.copy(), u=_seen(q, h),
             twin_h=twin.h, twin_u=_seen(twin_q, twin.h), exact_h=exact[0], exact_u=exact[1],
             xi=self.density.xi, f=f.copy(), offset=offset.copy(), face_h=face_h.copy(), face_u=face_u.copy(),
         )  # fmt: skip
@@ -167,11 +182,9 @@ class Play:
         """M(h, xi - u) on the velocity nodes, shape (h.size, n)."""
         return self.face_rows(h, u, h, u, self.scene.beta)
 
-    def face_rows(self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides) -> Array:
+    def face_rows(self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Any) -> Array:
         """M on the nodes with xi > 0 from the left states and xi < 0 from the right ones, shape (h.size, n)."""
-        rows = np.zeros((h_left.size, self.density.grid.count))
-        self.density.fill(h_left, u_left, h_right, u_right, beta, rows, Status.empty(h_left.size))
-        return rows
+        return fill(self.method.equilibrium, h_left, u_left, h_right, u_right, beta, self.density.grid)
 
     def _exact(self, t: float) -> tuple[Array | None, Array | None]:
         if self.exact is None:

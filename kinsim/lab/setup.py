@@ -17,11 +17,11 @@ from ..method import Kinetic, unread
 from ..model.friction import Frictionless
 from ..model.heap import Blocks, Table
 from ..read import SceneFile, check, parse_keys, read_keys, take_method
-from ..simulate import ROUNDING
-from ..stepper import largest_courant, make_scheme
+from ..solver.march import ROUNDING
+from ..solver.model import scheme_of
 
 COURANT = 0.45
-"""Of built-in scenes in the lab: below the limit of each scheme and order; the paper's steps take minutes to watch."""
+"""Of built-in scenes in the lab; the paper's steps take minutes to watch."""
 
 NODES = 128
 """Of methods that have none."""
@@ -102,14 +102,13 @@ class Setup:
         """Why it cannot be run, in a sentence, or nothing."""
         try:
             file = self.file
-            make_scheme(file.method, file.scene)
+            scheme_of(file.method, file.scene)
         except (InputError, MemoryError) as error:
             return line_of(error)
-        limit, courant = largest_courant(file.method), first_courant(file.scene, file.clock)
-        if courant <= limit * (1.0 + ROUNDING):
+        courant = first_courant(file.scene, file.clock)
+        if courant <= 1.0 + ROUNDING:
             return ""
-        bound = "the CFL bound (28)" if limit == 1.0 else "the CFL bound of order 2"
-        return f"Courant number {courant:.3g} is above {limit:g}, {bound}; take at most {limit:g}"
+        return f"Courant number {courant:.3g} is above 1, the CFL bound (28); take at most 1"
 
     def given(self, key: str) -> Any:
         """What stands at a dotted key, filled in where the file leaves it out.

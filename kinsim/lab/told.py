@@ -56,5 +56,5 @@ def passing(play: Play, moment: Moment, cell: int) -> str:
         return ""
     if not moment.step or moment.stage == "projection":
         return COUPLED
-    slow = bool(play.loop.stepper.now.at_right[min(cell, moment.h.size - 2)])
+    slow = play.takes_balanced(min(cell, moment.h.size - 2))
     return f"In this step the cell took {'the balanced face (25)' if slow else 'the upwind face (19)'} here."

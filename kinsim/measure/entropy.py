@@ -13,12 +13,11 @@ from functools import cache
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array, Local
 from ..errors import InputError
-from ..local import Local
 from ..model.ground import Flat
 from ..scene import Scene
-from ..step import Step
+from ..solver.step import Step
 
 
 @dataclass(frozen=True)

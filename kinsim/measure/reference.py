@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kinetic.equilibrium import EQUILIBRIA, Status
-from ..kinetic.transport import half_sums
+from ..kinetic.equilibrium import fill, weights
 from ..kinetic.velocity import Grid
 from .regimes import Array, States
 
@@ -48,9 +47,8 @@ def on_grid(states: States, beta: float) -> tuple[Array, Array]:
     reach = np.where(reach > 0.0, reach, np.sqrt(beta))
     left, right = ((0.5 * (c / reach) ** 2, u / reach) for c, u in ((c_left, u_left), (c_right, u_right)))
     grid = Grid(NODES, 2.0 / NODES)
-    rows, room = np.empty((h_left.size, NODES)), EQUILIBRIA["cell-average"]
-    room.fill(*left, *right, 1.0, grid, rows, Status.empty(h_left.size))
-    P1, P2, N1, N2 = np.empty((4, h_left.size))
-    half_sums(rows, *room.weights(grid), P1, P2, N1, N2)
+    rows = fill("cell-average", *left, *right, 1.0, grid)
+    ahead, behind = rows[:, grid.half :], rows[:, : grid.half][:, ::-1]
+    (P1, P2), (N1, N2) = ((half @ w for w in weights("cell-average", grid)) for half in (ahead, -behind))
     unit = (reach / np.sqrt(beta)) ** 2  # of heights
-    return unit * reach * (P1 + N1), unit * reach * reach * (P2 + N2)
+    return unit * reach * (P1 + N1), unit * reach * reach * (P2 - N2)

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..errors import InputError
 from ..method import Kinetic, Macroscopic
 from ..run import Run
-from ..step import Step, step
+from ..solver.step import Step, step
 
 if TYPE_CHECKING:
     import xarray

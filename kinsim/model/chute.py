@@ -3,19 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field
 
-from ..local import Local
 from ..value import Number, kind, value
 from .slope import Slope
-
-
-class Incline(NamedTuple):
-    """What a law of friction asks of the ground: the pull of gravity onto it."""
-
-    cos: Local
 
 
 @value

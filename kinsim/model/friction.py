@@ -1,29 +1,53 @@
-"""Laws of friction: how hard the ground can hold a mass back."""
+"""Laws of friction: which deceleration the ground brings to bear on a moving layer, and the most it holds at rest.
+
+A law is its numbers and one formula, resistance(law, h, v, n): r for the height h, the speed v >= 0 and the normal
+acceleration n = cos zeta + eta kappa u^2; r at v = 0 is the most that it holds. A law of one's own is a NamedTuple or a
+dataclass with that formula, which may use `math`.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Protocol
+from collections.abc import Callable
+from typing import Annotated, Any, Literal, NamedTuple
 
-from pydantic import Field
+from pydantic import Field, ValidatorFunctionWrapHandler, WrapSerializer, WrapValidator
 
-from ..local import Local
-from ..value import Number, kind, value
-
-
-class Pressed(Protocol):
-    """Ground onto which gravity pulls."""
-
-    @property
-    def cos(self) -> Local:
-        """cos zeta, or the normal force where the chute bends (dimensionless)."""
+from ..value import Number, described_outside, kind, value
 
 
-class FrictionLaw(Protocol):
-    """A law of friction."""
+class NoFriction(NamedTuple):
+    """r = 0."""
 
-    def resistance(self, chute: Pressed) -> Local:
-        """R of Definition 1 (dimensionless), in proportion to the normal force."""
+    def resistance(law, h, v, n):  # noqa: N805
+        return 0.0
+
+    def holds(law, h, w, n):  # noqa: N805
+        return 0.0
+
+    def brought(law, h, w, dt, n):  # noqa: N805
+        return 0.0
+
+    def brought_midway(law, h, u, h1, w, dt, acts, n):  # noqa: N805
+        return 0.0
+
+
+class DryFriction(NamedTuple):
+    """r = mu n."""
+
+    mu: float
+
+    def resistance(law, h, v, n):  # noqa: N805
+        return law.mu * n
+
+    def holds(law, h, w, n):  # noqa: N805
+        return law.mu * n
+
+    def brought(law, h, w, dt, n):  # noqa: N805
+        return law.mu * n
+
+    def brought_midway(law, h, u, h1, w, dt, acts, n):  # noqa: N805
+        return law.mu * n
 
 
 @value
@@ -32,9 +56,10 @@ class Frictionless:
 
     kind: Literal["frictionless"] = kind("frictionless")
 
-    def resistance(self, chute: Pressed) -> Local:
-        """R of Definition 1 (dimensionless)."""
-        return 0.0 * chute.cos
+    @property
+    def law(self) -> NoFriction:
+        """What kernels take."""
+        return NoFriction()
 
 
 @value
@@ -44,9 +69,31 @@ class Coulomb:
     delta: Annotated[Number, Field(ge=0, lt=math.pi / 2)]
     kind: Literal["coulomb"] = kind("coulomb")
 
-    def resistance(self, chute: Pressed) -> Local:
-        """R of Definition 1 (dimensionless)."""
-        return chute.cos * math.tan(self.delta)
+    @property
+    def law(self) -> DryFriction:
+        """What kernels take."""
+        return DryFriction(math.tan(self.delta))
 
 
-Friction = Annotated[Frictionless | Coulomb, Field(discriminator="kind")]
+def formula_of(friction: Any) -> Callable[[float, float, float], float]:
+    """r(h, v, n) of a law."""
+    law = friction if hasattr(friction, "resistance") else friction.law
+    return law.resistance  # type: ignore[no-any-return]
+
+
+def held_by(friction: Any, n: float) -> float:
+    """R of Definition 1: the most that a law holds of a layer of height 1 at rest under the normal acceleration n."""
+    return float(formula_of(friction)(1.0, 0.0, n))
+
+
+def _from_outside(given: Any, check: ValidatorFunctionWrapHandler) -> Any:
+    """A law of the package is checked, one from outside taken as it is if it has a formula."""
+    outside = not isinstance(given, dict) and type(given) not in (Frictionless, Coulomb)
+    return given if outside and (hasattr(given, "resistance") or hasattr(given, "law")) else check(given)
+
+
+Friction = Annotated[
+    Annotated[Frictionless | Coulomb, Field(discriminator="kind")],
+    WrapValidator(_from_outside),
+    WrapSerializer(described_outside),
+]

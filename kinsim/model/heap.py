@@ -7,16 +7,15 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, GetPydanticSchema
 from pydantic_core import core_schema
 
+from ..arrays import Array
 from ..errors import InputError
 from ..expression import check_names, evaluate
 from ..value import Number, kind, value
 from .csv_table import read_columns
 
-Array = NDArray[np.float64]
 State = tuple[Array, Array]
 
 

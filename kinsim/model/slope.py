@@ -9,15 +9,14 @@ import math
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
+from ..arrays import Array
 from ..errors import InputError
 from ..expression import check_names, evaluate
 from ..value import Number, kind, value
 from .slope_table import SlopePoints, SlopeTable
 
-Array = NDArray[np.float64]
 Angle = Annotated[Number, Field(ge=-math.radians(80.0), le=math.radians(80.0))]
 Length = Annotated[Number, Field(gt=0)]
 

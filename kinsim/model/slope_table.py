@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field
 
+from ..arrays import Array
 from ..errors import InputError
 from ..value import Number, kind, value
 from .csv_table import read_columns
@@ -17,7 +17,6 @@ from .csv_table import read_columns
 if TYPE_CHECKING:
     from scipy.interpolate import UnivariateSpline
 
-Array = NDArray[np.float64]
 Smoothing = Annotated[Number, Field(ge=0, le=1000)]
 
 BETWEEN = 20

@@ -48,7 +48,7 @@ def draw_atlas(found: xarray.Dataset) -> Figure:
         at = (columns["axis"] == one) & (columns["across"] == across)
         _line(axes, {name: column[at] for name, column in columns.items()}, one, across)
         if one == "courant":
-            _limit(axes, columns["value"][at], float(found.attrs["limit"]))
+            _limit(axes, columns["value"][at], 1.0)
     handles = [
         all_axes[0].scatter([], [], color=colour, marker=mark, edgecolor="black", linewidth=0.5, label=word)
         if mark != "_"

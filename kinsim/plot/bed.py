@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..model.chute import ConstantSlope, SmoothChute
 from ..scene import Scene
 

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
+from ..diagnostics.dump import LONG_NAMES
 from ..errors import InputError
 from ..film.reel import equilibrium
 from ..run import Run
-from ..watch.dump import LONG_NAMES
 from .picture import save
 
 if TYPE_CHECKING:

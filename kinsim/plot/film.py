@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..balance.stages import Array
+from ..arrays import Array
+from ..diagnostics.lift import normal_force
 from ..film.reel import Reel, equilibrium, visible
 from ..model.ground import Smooth
-from ..watch.lift import normal_force
 from .bed import LIFTED, Bed, curved
 
 SIZES = {True: (9.0, 4.4), False: (5.6, 4.4)}

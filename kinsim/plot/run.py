@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
+from ..diagnostics.dump import LONG_NAMES
 from ..errors import InputError
 from ..exact.of_scene import exact_of
 from ..film.reel import equilibrium, visible
 from ..run import Run
-from ..watch.dump import LONG_NAMES
 from .bed import Bed, curved
 from .picture import save
 

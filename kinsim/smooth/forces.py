@@ -21,9 +21,9 @@ import math
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..arrays import Array
+
 Numbers = float | Array
 T = TypeVar("T")
 """Numbers, arrays, or symbols of computer algebra."""

@@ -12,12 +12,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from .forces import mean_square
 
-Array = NDArray[np.float64]
 Numbers = float | Array
 
 STEEPEST = 0.2

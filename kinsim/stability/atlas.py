@@ -15,7 +15,6 @@ from ..errors import InputError
 from ..kinetic.velocity import Uniform
 from ..measure.compare import method_name
 from ..method import Kinetic, Macroscopic
-from ..stepper import largest_courant
 from ..studies.engine import Tell
 from ..studies.member import Member, Request
 from ..studies.record import Record, failed
@@ -147,5 +146,5 @@ def _dataset(rows: Sequence[dict[str, Any]], method: Kinetic | Macroscopic) -> x
     numbers = {name: ("point", np.array([row[name] for row in rows]), {"units": "1"}) for name in MEASURES}
     return xarray.Dataset(
         columns | numbers,
-        attrs={"title": "kinsim atlas", "method": method_name(method), "limit": largest_courant(method)},
+        attrs={"title": "kinsim atlas", "method": method_name(method)},
     )

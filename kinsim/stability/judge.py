@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..balance.schemes import flat
-from ..balance.stages import Array
+from ..arrays import Array
 from ..measure.entropy import of_state
+from ..model.ground import flat
 from ..run import ENDED
 from ..scene import Scene
 from .setting import Setting
@@ -104,9 +104,9 @@ def rise(scene: Scene, h: Array, q: Array) -> float:
     """
     unit = float(np.max(h)) or 1.0
     h, x = h / unit, scene.x
-    pull = flat(scene).pull
+    pull = flat(scene.ground).pull
     place = pull * (x.max() - x if pull > 0 else x.min() - x) * h
-    energy = (of_state(h, q / unit, flat(scene).beta * unit) + place).sum(axis=1)
+    energy = (of_state(h, q / unit, flat(scene.ground).beta * unit) + place).sum(axis=1)
     size = float(np.abs(energy).max())
     unknown = abs(pull) * scene.cells.dx * float(h[0].sum())
     most = float(np.max(energy - np.minimum.accumulate(energy)))

@@ -9,17 +9,16 @@ from typing import Literal
 
 import numpy as np
 
-from ..balance.schemes import flat
 from ..clock import Courant
 from ..kinetic.velocity import Uniform
 from ..method import Kinetic, Macroscopic
 from ..model.cells import Cells
 from ..model.chute import ConstantSlope
 from ..model.friction import Coulomb, Frictionless
+from ..model.ground import flat
 from ..model.heap import Profile
 from ..scene import Scene
 from ..simulate import find_bound
-from ..stepper import largest_courant
 
 Mass = Literal["hump", "one cell", "none"]
 
@@ -39,7 +38,7 @@ class Setting:
 
     Attributes:
         method: How it is computed.
-        number: The Courant number; None takes 0.9 of the method's limit.
+        number: The Courant number; None takes 0.9.
         steps, times: About times x steps are taken.
         count, dx: The cells.
         scale: The height of the hump.
@@ -77,7 +76,7 @@ class Setting:
             Cells(0.0, self.count * self.dx, self.count), Profile(h), ConstantSlope(self.zeta),
             Coulomb(self.delta) if self.delta else Frictionless(), "wall", self.epsilon,
         )  # fmt: skip
-        ground = flat(plain)
+        ground = flat(plain.ground)
         u = self.froude * math.sqrt(2.0 * ground.beta * h.max()) * np.where(h > 0, 1.0, 0.0)
         return replace(plain, heap=Profile(h, u))
 
@@ -99,8 +98,8 @@ class Setting:
     @property
     def clock(self) -> Courant:
         """About `steps` steps, fewer where gravity accelerates the mass much."""
-        scene, ground = self.scene, flat(self.scene)
-        number = 0.9 * largest_courant(self.method) if self.number is None else self.number
+        scene, ground = self.scene, flat(self.scene.ground)
+        number = 0.9 if self.number is None else self.number
         fastest = scene.fastest
         way = self.times * self.steps * number * scene.cells.dx
         ends = [math.sqrt(2.0 * way / pull) for pull in [abs(ground.pull) + ground.hold] if pull > 0.0]

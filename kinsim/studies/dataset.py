@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..diagnostics.ledger import EVERY_COLUMN
 from ..expression import evaluate
 from ..measure.compare import method_name
 from ..method import Kinetic, Macroscopic
-from ..watch.ledger import EVERY_COLUMN
 from .record import Record
 
 if TYPE_CHECKING:

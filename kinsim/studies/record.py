@@ -14,13 +14,13 @@ from typing import Any
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..clock import Replay
+from ..diagnostics.ledger import EVERY_COLUMN
 from ..errors import InputError
 from ..run import Run
 from ..simulate import Progress, simulate
 from ..store import replacing
-from ..watch.ledger import EVERY_COLUMN
 from .member import ONCE, Member
 
 LARGEST = {"u_max", "courant", "iterations", "residual"}

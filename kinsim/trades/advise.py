@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..clock import Courant, Fixed
 from ..kinetic.velocity import Fitted, Uniform
 from ..method import Kinetic, Macroscopic

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..clock import Courant, Fixed
 from ..errors import InputError
 from ..kinetic.velocity import Fitted, Window

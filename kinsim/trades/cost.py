@@ -8,11 +8,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..clock import Courant
 from ..method import Kinetic
 from ..scene import Scene
-from ..stepper import largest_courant
 from ..studies.study import study
 from .family import NUMBER
 from .pace import finer, under_way, varied
@@ -43,11 +42,10 @@ def seconds_per_step(scene: Scene, methods: Sequence[Kinetic], **options: Any) -
     scene, kinds = under_way(scene), by_kind(methods)
     telling = [method for of in kinds for method in _telling(of)]
     few = finer(scene, QUARTER)
-    number = NUMBER * largest_courant(methods[0])
     over = {
         "method": [*telling, *telling],
         **varied([scene] * len(telling) + [few] * len(telling)),
-        "clock": [short_clock(scene, number)] * len(telling) + [short_clock(few, number)] * len(telling),
+        "clock": [short_clock(scene, NUMBER)] * len(telling) + [short_clock(few, NUMBER)] * len(telling),
     }
     found = study(scene, methods[0], over["clock"][0], over, paired=True, repeats=ROUNDS, **options)
     whole, part = (found["wall_time"] / found["steps"]).min("repeat").to_numpy().reshape(2, -1)

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, get_args
 
 from ..errors import InputError
-from ..kinetic.force import FORCES
 from ..kinetic.velocity import Fitted, Uniform
-from ..method import Kinetic, Macroscopic
+from ..method import ForceName, Kinetic, Macroscopic
 from ..read import SHARED
-from ..stepper import largest_courant
 from .pace import twin_of
 
 COUNTS = (8, 16, 32, 64, 128, 256)
@@ -22,22 +20,17 @@ CELLS = (0.25, 0.5, 2.0)
 """Cells of the lines over dx, over those of the scene."""
 
 NUMBER = 0.8
-"""Courant number over the largest that a method may take."""
+"""Courant number."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A method on `cells` times the cells of the scene, with steps of `number` times the longest it may take."""
+    """A method on `cells` times the cells of the scene, with steps of the Courant number `number`."""
 
     line: str
     method: Kinetic | Macroscopic
     cells: float = 1.0
     number: float = NUMBER
-
-    @property
-    def courant(self) -> float:
-        """Its Courant number."""
-        return self.number * largest_courant(self.method)
 
     @property
     def nodes(self) -> int:
@@ -62,7 +55,7 @@ def lines(method: Kinetic | Macroscopic) -> dict[str, list[Choice]]:
         "fitted": [Choice("fitted", kinetic(Fitted(n))) for n in FITTED],
         "force": [
             Choice("force", made)
-            for name in FORCES
+            for name in get_args(ForceName)
             if (made := _made(lambda name=name: kinetic(Uniform(64), force=name))) and name != "shift-linear"
         ],
         "dx": [Choice("dx", one, cells) for cells in CELLS for one in (twin, fitted)],

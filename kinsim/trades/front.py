@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 
 APART = 0.01
 """By so much less an error has to be to count as less."""

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..errors import InputError
 from ..exact.of_scene import exact_of
-from ..macroscopic.half_moments import half_moments_closed
+from ..macroscopic.closed_form import half_moments_closed
 from ..method import Macroscopic
 from ..model.boundary import Inflow, ends
 from ..model.cells import Cells

@@ -18,7 +18,6 @@ from ..model.cells import Cells
 from ..model.heap import Profile
 from ..scene import Scene
 from ..simulate import simulate
-from ..stepper import largest_courant
 from ..studies.member import ONCE
 
 
@@ -76,7 +75,7 @@ def steady(scene: Scene, method: Kinetic | Macroscopic, number: float, end: floa
     Raises:
         InputError: The closed form does not come to the end.
     """
-    allowed = min(number, largest_courant(method))
+    allowed = min(number, 1.0)
     run = unless_interrupted(simulate(scene, twin_of(method), Courant(allowed, end), ONCE))
     if run.t[-1] < end:
         raise InputError(f"the closed form does not come to t = {end:g}: {run.verdict}; take a scene that does")
@@ -94,5 +93,5 @@ def under_way(scene: Scene) -> Scene:
         return scene
     method = Macroscopic(4)
     across = (scene.cells.right - scene.cells.left) / scene.fastest
-    run = unless_interrupted(simulate(scene, method, Courant(0.8 * largest_courant(method), across), ONCE))
+    run = unless_interrupted(simulate(scene, method, Courant(0.8, across), ONCE))
     return replace(scene, heap=Profile(run.h[-1], run.u[-1]))

@@ -19,7 +19,7 @@ from typing import Any, Self
 import numpy as np
 from scipy.special import stdtrit
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..clock import Courant, Fixed
 from ..kinetic.velocity import Fitted, Uniform
 from ..method import Kinetic

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..balance.stages import Array
+from ..arrays import Array
 from ..clock import Courant, Fixed
 from ..errors import InputError
 from ..measure.compare import method_name
@@ -105,10 +105,10 @@ def _over(scene: Scene, family: Sequence[Choice], end: float, paces: dict[Any, F
     scenes = [finer(scene, one.cells) for one in family]
     counts = [one.cells.count for one in scenes]
     for one, its in zip(family, scenes, strict=True):
-        asked = (twin_of(one.method), its.cells.count, one.courant)
+        asked = (twin_of(one.method), its.cells.count, one.number)
         if asked not in paces:
-            paces[asked] = steady(its, one.method, one.courant, end)
-    clocks = [paces[twin_of(one.method), count, one.courant] for one, count in zip(family, counts, strict=True)]
+            paces[asked] = steady(its, one.method, one.number, end)
+    clocks = [paces[twin_of(one.method), count, one.number] for one, count in zip(family, counts, strict=True)]
     return {"method": [one.method for one in family], **varied(scenes), "clock": clocks}
 
 
@@ -148,7 +148,7 @@ def _measured(
         "order": ("member", [one.method.order for one in family]),
         "nodes": ("member", [one.nodes for one in family]),
         "cells": ("member", timed["cells.count"].to_numpy()),
-        "courant": ("member", [one.courant for one in family]),
+        "courant": ("member", [one.number for one in family]),
     }
     kept = timed[["mass_drift", "steps", "cell_steps", "verdict", "verdict_kind"]].reset_coords(drop=True)
     attrs = {

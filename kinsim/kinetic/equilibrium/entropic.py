@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
-from ...kernel import kernel, kernel_inner
-from ...local import Sides, at, left, right
-from ..velocity import Grid
+from ...kernel import routine
 from .few_nodes import few_nodes
-from .rows import Array, put
-from .status import CONVERGED, Status
+from .questions import Array
+from .status import CONVERGED
 
 LONGEST = 60
 """Newton iterations before a fall-back is taken."""
@@ -25,8 +20,7 @@ NEAR = 1e-6
 """Defect that is good enough to `polish` when the iterations are spent."""
 
 
-@dataclass(frozen=True)
-class Entropic:
+class Entropic(NamedTuple):
     """The density of least discrete kinetic entropy with the given mass and momentum.
 
     The entropy is the sum of H(f, xi) = xi^2 f/2 + (pi^2 beta^2/6) f^3. The minimiser is
@@ -36,42 +30,17 @@ class Entropic:
     is thinner than the grid two nodes carry it exactly.
     """
 
-    least = 4
+    def both_sides(equilibrium, h, u, beta, dxi, P, N):  # noqa: N805
+        return entropic_sides(h, u, beta, dxi, P, N) if u >= 0.0 else entropic_sides(h, -u, beta, dxi, N, P)
 
-    def fill(
-        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, grid: Grid,
-        rows: Array, status: Status,
-    ) -> None:  # fmt: skip
-        entropic(
-            h_left, u_left, h_right, u_right, beta, grid.dxi,
-            rows, status.iterations, status.residual, status.fallback,
-        )  # fmt: skip
+    def reports(equilibrium):  # noqa: N805
+        return True
 
-    def weights(self, grid: Grid) -> tuple[Array, Array]:
-        return grid.dxi * grid.side, grid.dxi * grid.side**2
+    def wider(equilibrium, dxi):  # noqa: N805
+        return dxi
 
 
-@kernel
-def entropic(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, dxi: float, rows: Array,
-    iterations: NDArray[np.int64], residual: Array, fallback: NDArray[np.int64],
-) -> None:  # fmt: skip
-    """Fill rows, and report the worse of the two states of each."""
-    half = rows.shape[1] // 2
-    P, N = np.empty(half), np.empty(half)
-    for i in range(rows.shape[0]):
-        u = u_left[i]
-        tries, defect, fell = entropic_sides(h_left[i], abs(u), at(left(beta), i), dxi, P, N)
-        put(P if u >= 0.0 else N, rows[i], True)
-        if h_right[i] != h_left[i] or u_right[i] != u or at(left(beta), i) != at(right(beta), i):
-            u = u_right[i]
-            more, rest, also = entropic_sides(h_right[i], abs(u), at(right(beta), i), dxi, P, N)
-            tries, defect, fell = max(tries, more), max(defect, rest), max(fell, also)
-        put(N if u >= 0.0 else P, rows[i], False)
-        iterations[i], residual[i], fallback[i] = tries, defect, fell
-
-
-@kernel_inner
+@routine()
 def dual(kappa: float, b: float, u: float, c: float, dxi: float, half: int) -> tuple[float, ...]:
     """Two first and three second derivatives of the dual value at f_j = c sqrt(p_j)/(pi beta).
 
@@ -94,7 +63,7 @@ def dual(kappa: float, b: float, u: float, c: float, dxi: float, half: int) -> t
     return g0, g1, h00, h01, h11
 
 
-@kernel_inner
+@routine()
 def entropic_sides(h: float, u: float, beta: float, dxi: float, P: Array, N: Array) -> tuple[int, float, int]:
     """The two sides of the minimiser, u >= 0, with iterations, residual and fall-back."""
     half = P.size
@@ -135,7 +104,7 @@ def entropic_sides(h: float, u: float, beta: float, dxi: float, P: Array, N: Arr
     return tries, polish(h, u, c, dxi, P, N), CONVERGED
 
 
-@kernel_inner
+@routine()
 def polish(h: float, u: float, c: float, dxi: float, P: Array, N: Array) -> float:
     """Multiply by 1 + a + b y so that mass and momentum hold to rounding; returns what is left of their defect."""
     weight = dxi / h
@@ -159,7 +128,7 @@ def polish(h: float, u: float, c: float, dxi: float, P: Array, N: Array) -> floa
     return defect
 
 
-@kernel_inner
+@routine()
 def two_nodes_are_optimal(h: float, u: float, beta: float, dxi: float, half: int) -> bool:
     """Whether the pair of nodes around u with the right mass and momentum satisfies the conditions of the minimum.
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from ...kernel import kernel_inner
-from .rows import Array
+from ...kernel import routine
+from .questions import Array
 from .status import MASS_ONLY, TWO_MOMENTS, TWO_NODES
 
 
-@kernel_inner
+@routine()
 def add_pair(mass: float, u: float, low: int, high: int, dxi: float, P: Array, N: Array) -> None:
     """Add `mass` with mean u on the nodes `low` and `high`; node j stands at (j + 1/2) dxi, those below 0 in N."""
     share = (u / dxi - (low + 0.5)) / (high - low)
@@ -20,7 +20,7 @@ def add_pair(mass: float, u: float, low: int, high: int, dxi: float, P: Array, N
             N[-1 - j] += mass * part / dxi
 
 
-@kernel_inner
+@routine()
 def few_nodes(h: float, u: float, beta: float, dxi: float, want_three: bool, P: Array, N: Array) -> int:
     """Carry mass h, momentum h u and, if it can be and is wanted, h u^2 + beta h^2/2 on two to four nodes, all >= 0.
 

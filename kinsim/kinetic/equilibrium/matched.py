@@ -3,71 +3,42 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...kernel import kernel, kernel_inner
-from ...local import Sides, at, left, right
-from ..velocity import Grid
-from .averages import average_side
+from ...kernel import routine
+from .averages import average
 from .few_nodes import few_nodes
-from .rows import Array, put
-from .status import CONVERGED, Status
+from .questions import Array
+from .status import CONVERGED
 
 LARGEST = float(np.finfo(float).max)
 """A residual that is larger is written as this."""
 
 
-@dataclass(frozen=True)
-class Matched:
+class Matched(NamedTuple):
     """Cell averages times a parabola, so that all three moments (3) hold to rounding.
 
     The parabola is one in (xi - u)/c. This is what keeps a pile at rest on the grid. Where it would make an entry
     negative, few nodes take over.
     """
 
-    least = 4
+    def both_sides(equilibrium, h, u, beta, dxi, P, N):  # noqa: N805
+        return matched_sides(h, u, beta, dxi, P, N) if u >= 0.0 else matched_sides(h, -u, beta, dxi, N, P)
 
-    def fill(
-        self, h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, grid: Grid,
-        rows: Array, status: Status,
-    ) -> None:  # fmt: skip
-        matched(
-            h_left, u_left, h_right, u_right, beta, grid.dxi,
-            rows, status.iterations, status.residual, status.fallback,
-        )  # fmt: skip
+    def reports(equilibrium):  # noqa: N805
+        return True
 
-    def weights(self, grid: Grid) -> tuple[Array, Array]:
-        return grid.dxi * grid.side, grid.dxi * grid.side**2
+    def wider(equilibrium, dxi):  # noqa: N805
+        return dxi
 
 
-@kernel
-def matched(
-    h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: Sides, dxi: float, rows: Array,
-    iterations: NDArray[np.int64], residual: Array, fallback: NDArray[np.int64],
-) -> None:  # fmt: skip
-    """Fill rows, and report the worse of the two states of each."""
-    half = rows.shape[1] // 2
-    P, N = np.empty(half), np.empty(half)
-    for i in range(rows.shape[0]):
-        u = u_left[i]
-        tries, defect, fell = matched_sides(h_left[i], abs(u), at(left(beta), i), dxi, P, N)
-        put(P if u >= 0.0 else N, rows[i], True)
-        if h_right[i] != h_left[i] or u_right[i] != u or at(left(beta), i) != at(right(beta), i):
-            u = u_right[i]
-            more, rest, also = matched_sides(h_right[i], abs(u), at(right(beta), i), dxi, P, N)
-            tries, defect, fell = max(tries, more), max(defect, rest), max(fell, also)
-        put(N if u >= 0.0 else P, rows[i], False)
-        iterations[i], residual[i], fallback[i] = tries, defect, fell
-
-
-@kernel_inner
+@routine()
 def matched_sides(h: float, u: float, beta: float, dxi: float, P: Array, N: Array) -> tuple[int, float, int]:
     """The two sides of the matched density, u >= 0, with iterations, residual and fall-back."""
-    average_side(h, u, beta, dxi, P)
-    average_side(h, -u, beta, dxi, N)
+    average(h, u, beta, dxi, P)
+    average(h, -u, beta, dxi, N)
     if not h > 0.0:
         return 0, 0.0, CONVERGED
     c = math.sqrt(2.0 * beta * h)

@@ -9,7 +9,7 @@ from bokeh.models import ColumnDataSource, LinearColorMapper, Range1d, Span
 from bokeh.palettes import Viridis256
 from bokeh.plotting import figure
 
-from ...balance.stages import Array
+from ...arrays import Array
 from ..books import COLUMNS, Books
 from ..cut import Cut
 from ..picture import image_of, peak_of, span

@@ -1,0 +1,1 @@
+"""Observers: what is noted down while a run goes on, between blocks of steps."""

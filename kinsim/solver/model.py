@@ -1,0 +1,127 @@
+"""A scene and a method as kernels see them."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import InputError
+from ..kernel import plain
+from ..kinetic.equilibrium import EQUILIBRIA, weights
+from ..kinetic.force import FORCES, Unforced
+from ..kinetic.gauss_jacobi import gauss_jacobi
+from ..kinetic.nodes import Nodes
+from ..kinetic.rows import FluxDifference, Resummed
+from ..kinetic.velocity import Fitted, Grid
+from ..macroscopic.closed_form import ClosedForm
+from ..macroscopic.outside import outside
+from ..method import LIMITERS, Kinetic, Macroscopic
+from ..model.boundary import Boundary, Inflow, ends
+from ..model.ground import Flat, Smooth
+from ..scene import Scene
+from ..schemes.bed import Curve, Plane
+from ..schemes.friction import law_of
+from ..schemes.order import First, Second
+from ..schemes.reflecting import Reflecting
+from ..schemes.scheme1 import Upwind
+from ..schemes.scheme4 import Held
+from ..schemes.scheme23 import Balanced, CoupledByCell, CoupledByFace
+from ..schemes.tile import OPEN, RING, STREAM, WALL, End, Ground, Model
+
+KINDS = {"open": OPEN, "wall": WALL, "periodic": RING}
+
+
+def model_of(scene: Scene, method: Kinetic | Macroscopic, grid: Grid | None) -> Model:
+    """What the march takes; `grid` are the velocity cells of a method that has some.
+
+    Raises:
+        InputError: The scheme is not made for the scene.
+    """
+    force, projection = Unforced(), FluxDifference()
+    if grid is not None and isinstance(method, Kinetic):
+        force = FORCES[method.force] if scene.forced else Unforced()
+        if method.projection == "re-summed":
+            half, n = grid.half, grid.count
+            arrays = (np.zeros((scene.cells.count, n)), np.zeros((scene.cells.count, n)), np.zeros(scene.cells.count))
+            projection = Resummed(*arrays, grid.side, np.zeros((10, half)), np.zeros((2, n + 4)))  # type: ignore[assignment]
+    order = Second(LIMITERS[method.limiter]) if method.order == 2 else First()
+    parts = scheme_of(method, scene), order, flux_of(method, grid), force, projection, ground_of(scene)
+    return plain(Model(*parts))  # type: ignore[no-any-return]
+
+
+def scheme_of(method: Kinetic | Macroscopic, scene: Scene) -> Any:
+    """The scheme of a method; without any force no cell is slow, so that scheme 3 is scheme 1.
+
+    Raises:
+        InputError: A scheme of the paper on a smooth chute.
+    """
+    if method.scheme == 4:
+        return Reflecting() if method.statics == "reflect" else Held()
+    if not isinstance(scene.ground, Flat):
+        raise InputError(f"scheme {method.scheme} is made for a constant slope; on a smooth chute take scheme 4")
+    if method.scheme == 1 or (method.scheme == 3 and not scene.forced):
+        return Upwind()
+    if method.scheme == 2:
+        return Balanced()
+    return CoupledByCell() if method.coupling == "cell" else CoupledByFace()
+
+
+def flux_of(method: Kinetic | Macroscopic, grid: Grid | None) -> Any:
+    """The numerical flux of a method."""
+    if isinstance(method, Macroscopic):
+        return ClosedForm() if method.flux is None else outside(method.flux)
+    if isinstance(method.velocity, Fitted):
+        return gauss_jacobi(method.velocity.count)
+    assert grid is not None
+    rows = (np.zeros(grid.half) for _ in range(4))
+    return Nodes(EQUILIBRIA[method.equilibrium], grid.dxi, *weights(method.equilibrium, grid), *rows, np.zeros(6))
+
+
+def ground_of(scene: Scene) -> Ground:
+    """Law, bed and ends of a scene."""
+    left, right = (_end(end) for end in ends(scene.boundary))
+    return Ground(law_of(scene.friction), _bed(scene.ground, scene.boundary), left, right, scene.cells.dx)
+
+
+def _end(end: str | Inflow) -> End:
+    return End(STREAM, end.h, end.u) if isinstance(end, Inflow) else End(KINDS[end], 0.0, 0.0)
+
+
+def _bed(ground: Flat | Smooth, boundary: Boundary) -> Plane | Curve:
+    if isinstance(ground, Flat):
+        return Plane(ground.pull, ground.cos, ground.beta)
+    mode: Any = "wrap" if boundary == "periodic" else "edge"
+    beta = np.pad(ground.ghosted, 1, mode="edge")
+    if boundary == "periodic":
+        beta[0], beta[-1] = beta[-5], beta[4]
+
+    def cells(values: Array) -> Array:
+        return np.pad(values, 2, mode=mode)
+
+    def faces(values: Array) -> Array:  # face i at place i, between the cells i and i + 1; the last place is no face
+        padded = np.concatenate([values[:1], values, values[-1:], values[-1:]])
+        if boundary == "periodic":
+            padded[0], padded[-2], padded[-1] = values[-2], values[1], values[2 % values.size]
+        return padded
+
+    face_beta, left, right = ground.beta_face, ground.ghosted[:-1], ground.ghosted[1:]
+    tilt = faces((right - left) / (4.0 * face_beta))
+    uneven = faces(np.cbrt(right / left) - 1.0), faces(np.cbrt(left / right) - 1.0)
+    return Curve(
+        cells(ground.pull), cells(ground.cos), cells(ground.bend), beta,
+        faces(ground.pull_face), faces(ground.cos_face), faces(face_beta), tilt, *uneven,
+    )  # fmt: skip
+
+
+def strongest(scene: Scene) -> float:
+    """The largest acceleration |sin zeta| + R."""
+    return float(np.max(np.abs(scene.pull) + scene.resistance))
+
+
+def falling(scene: Scene, number: float) -> float:
+    """The speed that keeps a grain which starts to slide from passing more than `number` cells in a step."""
+    drive = max(float(np.max(np.abs(scene.pull) - scene.resistance)), 0.0)
+    return math.sqrt(0.5 * number * scene.cells.dx * drive)

@@ -1,0 +1,314 @@
+"""A scene and a method made ready: `march` takes a block of steps, `stages` one step with all that is made on its way."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..arrays import Array
+from ..clock import AnyClock, Courant, Fixed, Replay
+from ..kinetic.velocity import Fitted, Grid, Uniform, Window
+from ..method import Kinetic, Macroscopic
+from ..scene import Scene
+from ..schemes.bed import beta_of, varies
+from ..schemes.questions import counted
+from ..schemes.tile import SIZE, TILE
+from .march import (
+    BEFORE,
+    BEYOND,
+    COUNTED,
+    FASTEST,
+    H_MIN,
+    LEFT_OVER,
+    LIFT_FROM,
+    LIFT_LEAST,
+    LIFT_SINCE,
+    LIFT_TO,
+    LOST_ALL,
+    OUTSIDE,
+    ROUNDING,
+    TICKS,
+    TIGHT,
+    Asked,
+    T,
+    march,
+    speed_of,
+)  # fmt: skip
+from .model import falling, model_of, strongest
+from .stages import Stages
+
+SHORTEST = 1e-9
+"""Steps shorter than this share of the whole time are not worth taking."""
+
+LARGEST = float(np.finfo(float).max)
+
+KEPT, SEEN = 15, 22
+"""What `march` keeps of each tile, and sees of a run."""
+
+
+@dataclass
+class Block:
+    """Some steps, and where they led.
+
+    Attributes:
+        reason: Why they ended; see `kinsim.solver.march`.
+        dts: Their lengths.
+        step: Number of the last step.
+        t: Time after it.
+        h, q: State after it, each of shape (nx,); views that are good until the next block.
+        last: Whether the clock has ended.
+    """
+
+    reason: int
+    dts: Array
+    step: int
+    t: float
+    h: Array
+    q: Array
+    last: bool
+    solver: Solver
+
+    @classmethod
+    def now(cls, solver: Solver) -> Block:
+        """No step more."""
+        return cls(COUNTED, np.empty(0), solver.step, solver.t, solver.h, solver.q, False, solver)
+
+    @property
+    def stages(self) -> Stages:
+        """The last step once more, with every stage."""
+        return self.solver.last_stages
+
+
+class Solver:
+    """Advances a state.
+
+    Attributes:
+        scene, method: What is computed.
+        model: The same as kernels see it.
+        grid: Velocity cells, or None.
+        step: Steps so far.
+        seen: What is seen of the run; the names of its entries are in `kinsim.solver.march`.
+        limit: The largest Courant number, (28).
+    """
+
+    limit = 1.0
+
+    def __init__(self, scene: Scene, method: Kinetic | Macroscopic, force: bool = False) -> None:
+        self.scene, self.method, self.force = scene, method, force
+        nx = scene.cells.count
+        self._nx, self.step = nx, 0
+        self._tiles = -(-nx // TILE)
+        self._states = [(np.zeros(nx + 4), np.zeros(nx + 4)) for _ in range(3)]
+        self._room = np.zeros((1, SIZE))
+        self._kept = np.zeros((self._tiles, KEPT))
+        self._fresh, self._dt = True, 0.0
+        self._stages: Stages | None = None
+        self.attempted = 0.0
+        self.first_mass = float(np.sum(scene.initial()[0])) * scene.cells.dx
+        self.seen = fresh_seen()
+        self._make(scene.fastest)
+        self.put(*scene.initial())
+
+    def _make(self, reach: float) -> None:
+        """The model, with velocity cells for velocities up to `reach`."""
+        velocity = self.method.velocity if isinstance(self.method, Kinetic) else None
+        self._velocity = velocity if isinstance(velocity, Uniform | Window) else None
+        self.grid: Grid | None = None
+        if isinstance(velocity, Uniform):
+            self.grid = velocity.grid(reach)
+        elif isinstance(velocity, Window):
+            self.grid = velocity.grid(2.0 * reach)
+        self.model = model_of(self.scene, self.method, self.grid)
+
+    def put(self, h: Array, q: Array) -> None:
+        """Stand at the state (h, q), each of shape (nx,)."""
+        now_h, now_q = self._states[0]
+        now_h[2:-2], now_q[2:-2] = h, np.where(np.asarray(h) == 0.0, 0.0, q)
+        self._fresh, self._stages = True, None
+
+    @property
+    def t(self) -> float:
+        """The time."""
+        return float(self.seen[T])
+
+    @property
+    def h(self) -> Array:
+        """Heights, shape (nx,)."""
+        return self._states[0][0][2:-2]
+
+    @property
+    def q(self) -> Array:
+        """Momenta, shape (nx,)."""
+        return self._states[0][1][2:-2]
+
+    @property
+    def fastest(self) -> float:
+        """The fastest particle |u| + c of the state."""
+        return float(self._kept[:, FASTEST].max())
+
+    @property
+    def before(self) -> tuple[Array, Array]:
+        """(h, q) before the last step."""
+        h, q = self._states[1]
+        return h[2:-2], q[2:-2]
+
+    @property
+    def counted(self) -> float:
+        """The outermost velocity that (28) counts."""
+        bed, left, right = self.model.ground.bed, self.model.ground.left, self.model.ground.right
+        streams = speed_of(left, beta_of(bed, 1)), speed_of(right, beta_of(bed, self._nx + 2))
+        return float(counted(self.model.flux, max(self.fastest, *streams)))
+
+    @property
+    def quickest(self) -> float:
+        """The velocity from which a Courant number makes steps."""
+        return max(self.counted, self.fastest)
+
+    @property
+    def room(self) -> float:
+        """How large sums may become beside the mass in the beginning, to which they are compared."""
+        return LARGEST * min(self.first_mass or 1.0, 1.0) / (8.0 * max(self.scene.cells.dx, 1.0))
+
+    def ended(self, clock: AnyClock) -> bool:
+        """Whether the clock has no step left."""
+        if isinstance(clock, Courant):
+            return self.t >= clock.end
+        return self.seen[TICKS] >= clock.ticks and self.seen[LEFT_OVER] == 0.0
+
+    def march(self, clock: AnyClock, most: int, until: float = math.inf, past: float = math.inf) -> Block:
+        """At most `most` steps, to land on the time `until`, and no further than the first one at or after `past`."""
+        planned = np.array(clock.dts) if isinstance(clock, Replay) else np.empty(0)
+        if not isinstance(clock, Courant):
+            most = min(most, int(clock.ticks - self.seen[TICKS]) + int(self.seen[LEFT_OVER] > 0.0))
+        asked = self._asked(clock, min(until, clock.end), past)
+        dts, done, reason = np.empty(most), 0, COUNTED
+        while done < most and reason == COUNTED:
+            steps, reason = self._go(asked, planned, most - done, self._room, dts[done:])
+            done += steps
+            if reason == TIGHT:
+                steps, reason = self._go_tight(asked, planned, dts[done:])
+                done += steps
+            if reason == OUTSIDE and self._follow(float(self.seen[BEYOND])):
+                asked, reason = self._asked(clock, min(until, clock.end), past), COUNTED
+        return Block(reason, dts[:done].copy(), self.step, self.t, self.h, self.q, self.ended(clock), self)
+
+    def _go(self, asked: Asked, planned: Array, most: int, rooms: Array, dts: Array) -> tuple[int, int]:
+        steps, reason = march(
+            self.model, asked, planned, most, tuple(self._states), rooms, self._kept, dts, self.seen, self._fresh
+        )
+        if steps < most:
+            self.attempted = float(dts[steps])
+        if steps:
+            turn = steps % 3
+            now, before, spare = self._states
+            self._states = [[now, before, spare], [spare, now, before], [before, spare, now]][turn]
+            self._dt, self._fresh, self._stages = float(dts[steps - 1]), False, None
+            self.step += steps
+        return steps, reason
+
+    def _go_tight(self, asked: Asked, planned: Array, dts: Array) -> tuple[int, int]:
+        """One step in which the density may lose mass over the edge of its window: look at it, and book the loss."""
+        steps, reason = self._go(asked, planned, 1, np.zeros((self._tiles, SIZE)), dts)
+        if steps:
+            density = self.last_stages.density
+            self.seen[LOST_ALL] += self.scene.cells.dx * (density.lost + density.cut)
+        return steps, reason
+
+    def _asked(self, clock: AnyClock, until: float, past: float) -> Asked:
+        nan = math.nan
+        number = clock.number if isinstance(clock, Courant) else 0.0
+        grid, velocity = self.grid, self._velocity
+        bound, tight, stops = math.inf, math.inf, 1.0
+        if grid is not None:
+            bound = grid.bound
+            if isinstance(velocity, Uniform):
+                stops = float(velocity.beyond == "stop")
+                tight = bound - 1.5 * grid.dxi
+        slow = 1e-3 * grid.dxi if grid is not None else 0.0
+        lifts = 0.0
+        if varies(self.model.ground.bed) and self.scene.ground.bends:  # type: ignore[union-attr]
+            lifts = 2.0 if self.scene.chute.lifting == "stop" else 1.0  # type: ignore[union-attr]
+        return Asked(
+            dt=clock.dt if isinstance(clock, Fixed) else nan, number=number,
+            falling=falling(self.scene, number) if number else 0.0,
+            shortest=SHORTEST * clock.end if number else 0.0,
+            limit=math.inf if self.force else self.limit * (1.0 + ROUNDING),
+            room=self.room, bound=bound, stops=stops, pull=strongest(self.scene), tight=tight,
+            still=0.0 if grid is not None else 1e-12, still_per_h=slow, stop_at_rest=float(clock.stop_at_rest),
+            until=until, past=past, lifts=lifts,
+        )  # fmt: skip
+
+    def _follow(self, reach: float) -> bool:
+        """Make a window that follows for velocities up to `reach`; False if the velocity cells are fixed."""
+        if not isinstance(self._velocity, Window):
+            return False
+        self.seen[BEYOND] = 0.0
+        report = self.model.flux.report
+        self._make(reach)
+        self.model.flux.report[:] = report
+        self._fresh = True
+        return True
+
+    def warm_up(self) -> None:
+        """Compile what this run needs, so that it does not count as running."""
+        self._go(self._asked(Fixed(1.0, 1), math.inf, math.inf), np.empty(0), 0, self._room, np.empty(1))
+        if self.grid is not None:
+            self.stages(self.h, self.q, 1e-3 * self.scene.cells.dx).density.f  # noqa: B018
+
+    def stages(self, h: Array, q: Array, dt: float, t: float = 0.0, force: bool = True) -> Stages:
+        """One step from (h, q) at time t, every stage kept: a march of one step whose tiles have a room each."""
+        other = Solver.__new__(Solver)
+        other.__dict__ |= self.__dict__
+        other._states = [(np.zeros(self._nx + 4), np.zeros(self._nx + 4)) for _ in range(3)]
+        other._kept, other.seen, other.force = np.zeros((self._tiles, KEPT)), fresh_seen(), force
+        if is_stored(self.method):
+            other.model = model_of(self.scene, self.method, self.grid)
+        other.put(h, q)
+        rooms = np.zeros((self._tiles, SIZE))
+        asked = other._asked(Fixed(dt, 1), math.inf, math.inf)._replace(bound=math.inf, room=math.inf)
+        report = other.model.flux.report.copy() if self.grid is not None else np.empty(0)
+        march(other.model, asked, np.empty(0), 1, tuple(other._states), rooms, other._kept, np.empty(1), other.seen, True)
+        if self.grid is not None:
+            other.model.flux.report[:] = report
+        return Stages(other, rooms, dt, t)
+
+    @property
+    def last_stages(self) -> Stages:
+        """The last step once more, with every stage."""
+        if self._stages is None:
+            self._stages = self.stages(*self.before, self._dt, float(self.seen[BEFORE]))
+        return self._stages
+
+    def kept(self) -> dict[str, NDArray[Any]]:
+        """All that the next step depends on."""
+        state, before = np.array([self.h, self.q]), np.array(self.before)
+        kept = {"step": np.array([self.step, self._dt]), "seen": self.seen.copy(), "state": state, "before": before}
+        return kept | ({"report": self.model.flux.report.copy()} if self.grid is not None else {})
+
+    def restore(self, kept: dict[str, NDArray[Any]]) -> None:
+        """Stand where `kept` was told."""
+        step, self._dt = kept["step"].tolist()
+        self.step, self.seen = int(step), kept["seen"].copy()
+        for (h, q), values in zip(self._states, (kept["state"], kept["before"]), strict=False):
+            h[2:-2], q[2:-2] = values
+        if self.grid is not None:
+            self.model.flux.report[:] = kept["report"]
+        self._fresh, self._stages = True, None
+
+
+def is_stored(method: Kinetic | Macroscopic) -> bool:
+    """Whether the next state comes out of f, so that f is stored."""
+    return isinstance(method, Kinetic) and method.projection == "re-summed" and not isinstance(method.velocity, Fitted)
+
+
+def fresh_seen() -> Array:
+    """Nothing seen yet."""
+    seen = np.zeros(SEEN)
+    seen[[H_MIN, LIFT_FROM, LIFT_SINCE, LIFT_LEAST]] = math.inf
+    seen[LIFT_TO] = -math.inf
+    return seen
+
