@@ -27,7 +27,8 @@ from typing import Any, Literal, TypeVar
 import numba
 import numpy as np
 import platformdirs
-from numba.core import config, errors, types
+from llvmlite import ir
+from numba.core import cgutils, config, errors, types
 from numba.core.compiler import CompileResult
 from numba.extending import intrinsic, overload, register_jitable
 from numba.np import linalg
@@ -62,6 +63,10 @@ _load_without_blas()
 # ---- formulas, routines and questions -----------------------------------------------------------------------------
 
 
+INSIDE: dict[str, Any] = {"error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+"""Options of what only compiled code calls: a door for Python would take time to compile."""
+
+
 def formula(*flags: Literal["contract", "reassoc", "nsz", "nnan", "arcp"]) -> Callable[[F], F]:
     """A function of numbers or of one row, laid into every kernel that calls it.
 
@@ -69,31 +74,25 @@ def formula(*flags: Literal["contract", "reassoc", "nsz", "nnan", "arcp"]) -> Ca
     where all arguments are the same in a mirrored flow, that is for functions of h and |u|; "reassoc" and "nsz" take a
     sum over a row in any order.
     """
-    return register_jitable(error_model="numpy", forceinline=True, fastmath=set(flags))  # type: ignore[no-any-return]
+    return register_jitable(**INSIDE, forceinline=True, fastmath=set(flags))  # type: ignore[no-any-return]
 
 
 def routine(*flags: Literal["contract", "reassoc", "nsz", "nnan", "arcp"]) -> Callable[[F], F]:
     """A longer such function, compiled by itself and called."""
-    return register_jitable(error_model="numpy", fastmath=set(flags))  # type: ignore[no-any-return]
+    return register_jitable(**INSIDE, fastmath=set(flags))  # type: ignore[no-any-return]
 
 
 def question(default: F) -> F:
     """Ask the class of the first argument for a method of this name; `default` is the answer of those without one."""
-    name = default.__name__
-
-    def ask(asked: Any, *rest: Any) -> Any:
-        return getattr(type(asked), name, default)(asked, *rest)
-
-    def choose(asked: Any, *rest: Any) -> Any:
-        return getattr(getattr(asked, "instance_class", None), name, default)
-
-    overload(ask, jit_options={"error_model": "numpy"}, strict=False)(choose)
-    ask.__doc__, ask.__name__ = default.__doc__, name
-    return ask  # type: ignore[return-value]
+    return _question(default, {})
 
 
 def short_question(default: F) -> F:
     """The same for formulas of a line or two, which are laid into the code that asks."""
+    return _question(default, {"forceinline": True})
+
+
+def _question(default: F, options: dict[str, Any]) -> F:
     name = default.__name__
 
     def ask(asked: Any, *rest: Any) -> Any:
@@ -102,7 +101,7 @@ def short_question(default: F) -> F:
     def choose(asked: Any, *rest: Any) -> Any:
         return getattr(getattr(asked, "instance_class", None), name, default)
 
-    overload(ask, jit_options={"error_model": "numpy", "forceinline": True}, strict=False)(choose)
+    overload(ask, jit_options=INSIDE | options, strict=False)(choose)
     ask.__doc__, ask.__name__ = default.__doc__, name
     return ask  # type: ignore[return-value]
 
@@ -112,7 +111,7 @@ def at(value: Any, i: int) -> float:
     return value[i] if isinstance(value, np.ndarray) else value  # type: ignore[no-any-return]
 
 
-@overload(at, jit_options={"forceinline": True}, strict=False)
+@overload(at, jit_options=INSIDE | {"forceinline": True}, strict=False)
 def _at(value: Any, i: Any) -> Any:
     return (lambda value, i: value[i]) if isinstance(value, types.Array) else (lambda value, i: value)
 
@@ -131,7 +130,7 @@ def _greatest(typing: Any, a: Any, b: Any) -> Any:
     return types.float64(types.float64, types.float64), build
 
 
-@overload(greatest, jit_options={"forceinline": True}, strict=False)
+@overload(greatest, jit_options=INSIDE | {"forceinline": True}, strict=False)
 def _in_kernels(a: Any, b: Any) -> Any:
     return lambda a, b: _greatest(a, b)
 
@@ -198,12 +197,143 @@ def shortened(error: Exception) -> str:
     return (f"line {number}: " if number else "") + (said[0] if said else str(error).split("\n")[0])
 
 
+# ---- parts that are compiled apart ---------------------------------------------------------------------------------
+
+
+class Apart:
+    """A function of values and of a place in a work array, compiled for the classes of the values and called by address.
+
+    A kernel that calls such parts is compiled once for all classes, and the parts of many variants add up instead of
+    multiplying. Numbers and arrays of the values stand in tables, so that all parts have the same signature:
+    (numbers, arrays, dt, begin, n, first, last, room) -> number, the first two and the last being addresses.
+
+    Attributes:
+        address: Where it is; without compiling, a number by which `perform` finds it.
+        row: The address, and those of its tables.
+    """
+
+    def __init__(self, function: Callable[..., Any], values: tuple[Any, ...], place: type) -> None:
+        self._numbers: list[float] = []
+        self._arrays: list[np.ndarray] = []
+        names: dict[str, Any] = {"stage": function, "Place": place, "carray": numba.carray, "pointer": pointer}
+        given = "".join(f"{self._written(value, names)}, " for value in values)
+        self._table = np.array(self._numbers or [0.0])
+        places = [(array.ctypes.data, array.shape[0], array.shape[-1]) for array in self._arrays]
+        self._places = np.array(places or [(0, 0, 0)], dtype=np.int64).reshape(-1)
+        if config.DISABLE_JIT:
+            self.address = len(_interpreted)
+            _interpreted.append(lambda dt, begin, n, first, last, room: function(
+                *values, dt, place(begin, n, bool(first), bool(last)), room))
+        else:
+            self.address = self._compiled(function, given, names, tuple(_classes_of(values)))
+        self.row = (self.address, self._table.ctypes.data, self._places.ctypes.data)
+
+    def _written(self, value: Any, names: dict[str, Any]) -> str:
+        """The expression that makes a value of the tables."""
+        if isinstance(value, tuple):
+            inner = "".join(f"{self._written(part, names)}, " for part in value)
+            name = type(value).__name__ if hasattr(value, "_fields") else ""
+            if name:
+                name = f"{name}_{len(names)}"
+                names[name] = type(value)
+            return f"{name}({inner})" if name else f"({inner})"
+        if isinstance(value, np.ndarray):
+            self._arrays.append(value)
+            at = 3 * (len(self._arrays) - 1)
+            shape = ", ".join(f"places[{at + 1 + axis}]" for axis in range(value.ndim))
+            return f"carray(pointer(places[{at}]), ({shape},))"
+        self._numbers.append(float(value))
+        return f"numbers[{len(self._numbers) - 1}]"
+
+    def _compiled(
+        self, function: Callable[..., Any], given: str, names: dict[str, Any], classes: tuple[type, ...]
+    ) -> int:  # fmt: skip
+        key = (function.__name__, given, classes)
+        if key not in _apart:
+            size = f"{len(self._table)}"
+            text = (
+                "def part(numbers_at, places_at, dt, begin, n, first, last, room_at, size):\n"
+                f"    numbers = carray(pointer(numbers_at), {size})\n"
+                f"    places = carray(whole_pointer(places_at), {len(self._places)})\n"
+                "    room = carray(pointer(room_at), size)\n"
+                f"    return float(stage({given}dt, Place(begin, n, first != 0, last != 0), room))\n"
+            )
+            names_out: dict[str, Any] = {}
+            exec(text, names | {"whole_pointer": whole_pointer, "__name__": __name__}, names_out)
+            part = numba.njit(error_model="numpy", nogil=True, no_cpython_wrapper=True)(names_out["part"])
+            kept = tuple(cls for cls in classes if cls is not tuple)
+            part._cache = _Cache(function.__name__, (function.__module__, function.__qualname__, text), kept)
+            try:
+                part.compile(PART.args)
+            except errors.NumbaError as error:
+                raise InputError(shortened(error)) from None
+            made = part.overloads[PART.args]
+            _apart[key] = made.library.get_pointer_to_function(made.fndesc.llvm_cfunc_wrapper_name), part
+        return int(_apart[key][0])
+
+
+PART = types.float64(*[types.int64] * 2, types.float64, *[types.int64] * 6)
+"""Signature of all parts."""
+
+_apart: dict[Any, tuple[int, Any]] = {}
+
+_interpreted: list[Callable[..., float]] = [lambda *given: 0.0]
+
+
+@intrinsic
+def pointer(typing: Any, address: Any) -> Any:
+    """The address of floats."""
+
+    def build(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return builder.inttoptr(given[0], context.get_value_type(types.CPointer(types.float64)))
+
+    return types.CPointer(types.float64)(types.int64), build
+
+
+@intrinsic
+def whole_pointer(typing: Any, address: Any) -> Any:
+    """The address of whole numbers."""
+
+    def build(context: Any, builder: Any, signature: Any, given: Any) -> Any:
+        return builder.inttoptr(given[0], context.get_value_type(types.CPointer(types.int64)))
+
+    return types.CPointer(types.int64)(types.int64), build
+
+
+@intrinsic
+def _call(typing: Any, address: Any, given: Any) -> Any:
+    def build(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        arguments = cgutils.unpack_tuple(builder, values[1])
+        kinds = [context.get_value_type(kind) for kind in PART.args]
+        kind = ir.FunctionType(ir.DoubleType(), kinds)
+        return builder.call(builder.inttoptr(values[0], kind.as_pointer()), arguments)
+
+    return types.float64(types.int64, types.Tuple(PART.args)), build
+
+
+def perform(rows: np.ndarray, which: int, dt: float, begin: int, n: int, first: bool, last: bool, room: np.ndarray) -> float:
+    """Call the part in row `which` of a table of `Apart.row`."""
+    return _interpreted[int(rows[which, 0])](dt, begin, n, first, last, room)
+
+
+@overload(perform, jit_options=INSIDE, strict=False)
+def _perform(rows: Any, which: Any, dt: Any, begin: Any, n: Any, first: Any, last: Any, room: Any) -> Any:
+    def in_kernels(rows, which, dt, begin, n, first, last, room):  # type: ignore[no-untyped-def]
+        given = (
+            rows[which, 1], rows[which, 2], dt, np.int64(begin), np.int64(n), np.int64(first), np.int64(last),
+            np.int64(room.ctypes.data), np.int64(room.size),
+        )  # fmt: skip
+        return _call(rows[which, 0], given)
+
+    return in_kernels
+
+
 # ---- the cache ----------------------------------------------------------------------------------------------------
 
 
-def _dispatcher(function: Callable[..., Any]) -> Any:
-    dispatcher = numba.njit(error_model="numpy", nogil=True)(function)
-    dispatcher._cache = _Cache(function)
+def _dispatcher(function: Callable[..., Any], **doors: bool) -> Any:
+    dispatcher = numba.njit(error_model="numpy", nogil=True, **(doors or {"no_cfunc_wrapper": True}))(function)
+    dispatcher._cache = _Cache(function.__name__, (function.__module__, function.__qualname__), ())
     return dispatcher
 
 
@@ -268,8 +398,8 @@ def _classes_in(kind: Any) -> Iterator[type]:
 class _Cache:
     """Keeps the compiled versions of one function, each in a file that names all that went into it."""
 
-    def __init__(self, function: Callable[..., Any]) -> None:
-        self._name = f"{function.__module__}.{function.__qualname__}"
+    def __init__(self, name: str, told: tuple[Any, ...], classes: tuple[type, ...]) -> None:
+        self._name, self._told, self._classes = name, told, classes
         self.cache_path = str(cache_folder() or "")
 
     def enable(self) -> None:
@@ -298,7 +428,7 @@ class _Cache:
     def save_overload(self, signature: Any, data: Any) -> None:
         """Keep the code for a signature, if it can be kept."""
         path = self._path(signature, data.target_context)
-        if path is None or any(lib.has_dynamic_globals for lib in (data.library,) if hasattr(lib, "has_dynamic_globals")):
+        if path is None or data.library.has_dynamic_globals:
             return
         try:
             content = pickle.dumps(data._reduce(), protocol=-1)
@@ -311,7 +441,7 @@ class _Cache:
     def _path(self, signature: Any, target: Any) -> Path | None:
         """The file; None if a class of the signature belongs to this process alone, or if nothing can be kept."""
         folder, told = cache_folder(), []
-        for cls in sorted({c for kind in signature for c in _classes_in(kind)}, key=repr):
+        for cls in sorted({c for kind in signature for c in _classes_in(kind)} | set(self._classes), key=repr):
             made_of = getattr(cls, "made_of", cls)
             source = _source_of(made_of.__module__)
             if source is None or "<locals>" in made_of.__qualname__:
@@ -319,5 +449,5 @@ class _Cache:
             told.append((made_of.__module__, made_of.__qualname__, source))
         if folder is None:
             return None
-        key = repr((self._name, str(signature), told, target.codegen().magic_tuple(), sys.version_info[:2]))
-        return folder / f"{self._name.rsplit('.', 1)[-1]}-{hashlib.sha256(key.encode()).hexdigest()[:24]}.code"
+        key = repr((self._told, str(signature), told, target.codegen().magic_tuple(), sys.version_info[:2]))
+        return folder / f"{self._name}-{hashlib.sha256(key.encode()).hexdigest()[:24]}.code"

@@ -74,6 +74,17 @@ class DerivativeCentred(NamedTuple):
         return True
 
 
+class After(NamedTuple):
+    """Any force on f, as far as the march is concerned."""
+
+
+class Before(NamedTuple):
+    """Any force on M^n, likewise."""
+
+    def acts_before(force):  # noqa: N805
+        return True
+
+
 class Unforced(NamedTuple):
     """Nothing pulls, and nothing holds back: f stays."""
 

@@ -61,11 +61,15 @@ class Nodes(NamedTuple):
     def limits_outflow(flux):  # noqa: N805
         return True
 
+
+class Spread(NamedTuple):
+    """Where the particles of a density on velocity cells are."""
+
+    equilibrium: Any
+    dxi: float
+
     def extent(flux, low, high):  # noqa: N805
         return -outermost(flux, -low), outermost(flux, high)
-
-    def counted(flux, fastest):  # noqa: N805
-        return min(outermost(flux, fastest), (flux.w1.size - 0.5) * flux.dxi) if fastest > 0.0 else 0.0
 
 
 @formula()

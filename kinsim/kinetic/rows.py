@@ -199,28 +199,30 @@ class Resummed(NamedTuple):
     work: Array
     padded: Array
 
-    def is_summed(projection):  # noqa: N805
-        return True
 
-    def sum_transported(projection, model, dt, place, room):  # noqa: N805
-        own, none = projection, projection.T[:0]
-        at = place.begin - 2
-        transport_rows(model, place, dt, 0, place.n, room, own.work, own.xi, own.T, none, none, at)
-        made = 0.0
-        for k in range(place.n):
-            m0, m1 = sum_row(own.T, at + k, own.xi, model.flux.dxi)
-            made += m0 - room[H1 + k]
-            room[H1 + k], room[QHAT + k] = m0, m1
-        return made
+@routine()
+def sum_transported(model: Model, dt: float, place: Place, room: Array) -> float:
+    """Sum h^{n+1} and qhat anew after transport; returns the mass this makes, per dx."""
+    own, none = model.projection, model.projection.T[:0]
+    at, made = place.begin - 2, 0.0
+    transport_rows(model, place, dt, 0, place.n, room, own.work, own.xi, own.T, none, none, at)
+    for k in range(place.n):
+        m0, m1 = sum_row(own.T, at + k, own.xi, model.flux.dxi)
+        made += m0 - room[H1 + k]
+        room[H1 + k], room[QHAT + k] = m0, m1
+    return made
 
-    def sum_forced(projection, model, dt, place, room):  # noqa: N805
-        own, at, made = projection, place.begin - 2, 0.0
-        push_rows(model, place, 0, place.n, room, own.work, own.padded, own.T, at, own.f, own.offset, at)
-        for k in range(place.n):
-            m0, m1 = sum_row(own.f, at + k, own.xi, model.flux.dxi)
-            made += m0 - room[H1 + k]
-            room[H1 + k], room[Q1 + k] = m0, m1 + own.offset[at + k] * m0
-        return made
+
+@routine()
+def sum_forced(model: Model, dt: float, place: Place, room: Array) -> float:
+    """Sum h^{n+1} and q^{n+1} anew after the force; returns the mass this makes, per dx."""
+    own, at, made = model.projection, place.begin - 2, 0.0
+    push_rows(model, place, 0, place.n, room, own.work, own.padded, own.T, at, own.f, own.offset, at)
+    for k in range(place.n):
+        m0, m1 = sum_row(own.f, at + k, own.xi, model.flux.dxi)
+        made += m0 - room[H1 + k]
+        room[H1 + k], room[Q1 + k] = m0, m1 + own.offset[at + k] * m0
+    return made
 
 
 @routine()

@@ -16,22 +16,6 @@ from pydantic import Field, ValidatorFunctionWrapHandler, WrapSerializer, WrapVa
 from ..value import Number, described_outside, kind, value
 
 
-class NoFriction(NamedTuple):
-    """r = 0."""
-
-    def resistance(law, h, v, n):  # noqa: N805
-        return 0.0
-
-    def holds(law, h, w, n):  # noqa: N805
-        return 0.0
-
-    def brought(law, h, w, dt, n):  # noqa: N805
-        return 0.0
-
-    def brought_midway(law, h, u, h1, w, dt, acts, n):  # noqa: N805
-        return 0.0
-
-
 class DryFriction(NamedTuple):
     """r = mu n."""
 
@@ -57,9 +41,9 @@ class Frictionless:
     kind: Literal["frictionless"] = kind("frictionless")
 
     @property
-    def law(self) -> NoFriction:
+    def law(self) -> DryFriction:
         """What kernels take."""
-        return NoFriction()
+        return DryFriction(0.0)
 
 
 @value

@@ -65,12 +65,6 @@ class Curve(NamedTuple):
     def beta_jump(bed, i):  # noqa: N805
         return bed.beta_face[i] - bed.beta_face[i - 1]
 
-    def lift(bed, i, u):  # noqa: N805
-        return bed.n[i] + bed.bend[i] * u * u
-
-    def varies(bed):  # noqa: N805
-        return True
-
 
 @short_question
 def pull(bed: Any, i: int) -> float:
@@ -111,15 +105,3 @@ def uneven(bed: Any, i: int) -> tuple[float, float]:
 def beta_jump(bed: Any, i: int) -> float:
     """What beta grows by from the left to the right face of cell i."""
     return 0.0
-
-
-@short_question
-def lift(bed: Any, i: int, u: float) -> float:
-    """cos zeta + eta kappa u^2 of cell i, negative where the mass leaves the ground."""
-    return bed.n
-
-
-@short_question
-def varies(bed: Any) -> bool:
-    """Whether the bed is a smooth chute."""
-    return False

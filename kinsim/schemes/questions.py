@@ -16,7 +16,7 @@ import numpy as np
 from ..kernel import question, routine, short_question
 from .bed import beta_of
 from .friction import brought
-from .tile import F1, F2, N1, N2, P1, P2, Q1, QHAT, Array, Ground, H, J, Place, U
+from .tile import N1, N2, P1, P2, Array, Ground, H, Place, U
 
 # ---- an order -----------------------------------------------------------------------------------------------------
 
@@ -83,9 +83,9 @@ def fluxes(scheme: Any, order: Any, flux: Any, ground: Ground, dt: float, place:
 
 
 @short_question
-def left_walls(scheme: Any) -> tuple[int, int]:
-    """Which rows hold the flux that a cell takes at its left wall."""
-    return F1, F2
+def has_two_fluxes(scheme: Any) -> bool:
+    """Whether the cell right of a face takes G at it, and the one left of it F."""
+    return False
 
 
 @question
@@ -170,12 +170,6 @@ def extent(flux: Any, low: float, high: float) -> tuple[float, float]:
     return low, high
 
 
-@short_question
-def counted(flux: Any, fastest: float) -> float:
-    """The outermost velocity that (28) counts, where the fastest particle has |u| + c = `fastest`."""
-    return fastest
-
-
 @question
 def cell_moments(flux: Any, bed: Any, place: Place, low: int, high: int, room: Array) -> None:
     """Half-range moments of the cells `low` to below `high`: P of cell k at face k, N of it at face k - 1."""
@@ -243,26 +237,3 @@ def meet(low: int, high: int, p1: int, p2: int, n1: int, n2: int, f1: int, f2: i
 def limits_outflow(flux: Any) -> bool:
     """Whether what leaves a cell is cut node by node, and so never more than there is."""
     return False
-
-
-# ---- what a density adds to a step --------------------------------------------------------------------------------
-
-
-@short_question
-def is_summed(projection: Any) -> bool:
-    """Whether U^{n+1} is summed anew from f, the letter of (20)."""
-    return False
-
-
-@question
-def sum_transported(projection: Any, model: Any, dt: float, place: Place, room: Array) -> float:
-    """Settle h^{n+1} and qhat after transport; returns the mass this makes, per dx."""
-    return 0.0
-
-
-@question
-def sum_forced(projection: Any, model: Any, dt: float, place: Place, room: Array) -> float:
-    """Write q^{n+1}, and settle h^{n+1}, after the force; returns the mass this makes, per dx."""
-    for k in range(place.n):
-        room[Q1 + k] = room[QHAT + k] + room[J + k]
-    return 0.0

@@ -58,8 +58,8 @@ class Reflecting(NamedTuple):
             room[G2 + k] = 2.0 * room[N2 + k] if static else room[G2 + k]
         return 0.0
 
-    def left_walls(scheme):  # noqa: N805
-        return G1, G2
+    def has_two_fluxes(scheme):  # noqa: N805
+        return True
 
     def settle(scheme, order, force, flux, ground, dt, place, room):  # noqa: N805
         bed, law, grip_dt = ground.bed, ground.law, dt * grip(ground.law)

@@ -49,8 +49,8 @@ class Balanced(NamedTuple):
             top = max(top, max(abs(room[U + k]), abs(room[U + k + 1])) + c)
         return top
 
-    def left_walls(scheme):  # noqa: N805
-        return G1, G2
+    def has_two_fluxes(scheme):  # noqa: N805
+        return True
 
     def settle(scheme, order, force, flux, ground, dt, place, room):  # noqa: N805
         bed, law, dx, grip_dt = ground.bed, ground.law, ground.dx, dt * grip(ground.law)
@@ -85,7 +85,7 @@ class CoupledByCell(NamedTuple):
     """Scheme 3 by cell, the paper's: slow cells take balanced fluxes, the others upwind ones; not conservative."""
 
     fluxes = Balanced.fluxes
-    left_walls = Balanced.left_walls
+    has_two_fluxes = Balanced.has_two_fluxes
     settle = Balanced.settle
     has_own_density = Balanced.has_own_density
     own_states = Balanced.own_states
@@ -99,7 +99,7 @@ class CoupledByFace(NamedTuple):
     """Scheme 3 by face: one flux per face, balanced where both its cells are slow; conservative."""
 
     fluxes = Balanced.fluxes
-    left_walls = Balanced.left_walls
+    has_two_fluxes = Balanced.has_two_fluxes
     settle = Balanced.settle
     has_own_density = Balanced.has_own_density
     own_states = Balanced.own_states

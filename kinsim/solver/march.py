@@ -6,26 +6,18 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..kernel import formula, generic, greatest, routine
-from ..schemes.bed import beta_of, lift, varies
+from ..arrays import Array
+from ..kernel import formula, greatest, kernel, perform, routine
+from ..schemes.bed import beta_of
 from ..schemes.formulas import updated
-from ..schemes.questions import (
-    counted,
-    face_states,
-    fluxes,
-    is_sloped,
-    is_summed,
-    judge,
-    left_walls,
-    settle,
-    show,
-    sum_forced,
-    sum_transported,
-)  # fmt: skip
+from ..schemes.questions import face_states, fluxes, is_sloped, judge, settle, show
 from ..schemes.tile import (
     F1,
     F2,
+    G1,
+    G2,
     H1,
     HM,
     HP,
@@ -39,15 +31,17 @@ from ..schemes.tile import (
     TILE,
     UM,
     UP,
-    Array,
     End,
     H,
-    Model,
+    J,
     Place,
     Q,
     all_dry,
     load,
 )  # fmt: skip
+
+Parts = NDArray[np.int64]
+"""Addresses of the parts of a step and of their tables, shape (8, 3)."""
 
 REACHED, COUNTED, COURANT, NOT_FINITE, AT_REST, OUTSIDE, LIFTED, TOO_SHORT, TIGHT = range(9)
 """Why a march ended: the time is reached; all steps are made; the next one would break (28); it would have numbers that
@@ -107,65 +101,77 @@ class Asked(NamedTuple):
     lifts: float
 
 
+class Shape(NamedTuple):
+    """What the march itself asks of a model, as numbers.
+
+    `dx` is the length of a cell; the ends are `left` and `right`; `two_fluxes` is 1 where the cells of a face may take
+    different fluxes, `sloped` where cells show slopes, `summed` where U^{n+1} is summed anew from f. (28) counts a
+    velocity v as (ceil((v + wider)/dxi - shift) - 1/2) dxi, at most `outermost`; as it is if dxi is 0.
+    """
+
+    dx: float
+    left: End
+    right: End
+    two_fluxes: float
+    sloped: float
+    summed: float
+    dxi: float
+    shift: float
+    wider: float
+    outermost: float
+    beta_left: float
+    beta_right: float
+
+
+JUDGE, SHOW, MEET, FLUXES, TRANSPORTED, SETTLE, FORCED, LOOK = range(8)
+"""The parts of a step, in their order."""
+
+
 @routine()
 def sweep(
-    model: Model, place: Place, h: Array, q: Array, dt: float, h1: Array, q1: Array, whole: bool, room: Array,
-    kept: Array,
+    shape: Shape, parts: Parts, place: Place, h: Array, q: Array, dt: float, h1: Array, q1: Array, whole: bool,
+    room: Array, kept: Array,
 ) -> None:  # fmt: skip
     """U^n -> U^{n+1} of a tile; the room then holds its stages. Unless all are asked for, rest costs its judgement."""
-    n, lam, ground, order = place.n, dt / model.ground.dx, model.ground, model.order
+    n, lam, begin, first, last = place.n, dt / shape.dx, place.begin, place.first, place.last
     load(h, q, place, room)
     rests = all_dry(n, room)
     if whole or not rests:
-        rests = judge(model.scheme, ground, dt, place, room) or rests
+        rests = perform(parts, JUDGE, dt, begin, n, first, last, room) > 0.0 or rests
     kept[RESTS] = kept[RESTS] + 1.0 if rests else 0.0
-    if rests and not whole and not is_summed(model.projection):
+    if rests and not whole and shape.summed == 0.0:
         for k in range(n):
-            h1[place.begin + k], q1[place.begin + k] = room[H + k], room[Q + k]
+            h1[begin + k], q1[begin + k] = room[H + k], room[Q + k]
         for what in (IN_LEFT, IN_RIGHT, MOVED_LEFT, MOVED_RIGHT, FACES, MADE, MENDED, CHANGE):
             kept[what] = 0.0
         return
-    show(order, ground, dt, place, room)  # slopes and half a step, or (19)
-    face_states(model.scheme, order, ground, place, room)  # held back, or (25)
-    made_at_faces = fluxes(model.scheme, order, model.flux, ground, dt, place, room)  # (24)
-    kept[FACES] = max(made_at_faces, shown_reach(model, place, room) if is_sloped(order) else 0.0)
-    left1, left2 = left_walls(model.scheme)
+    perform(parts, SHOW, dt, begin, n, first, last, room)  # slopes and half a step, or (19)
+    perform(parts, MEET, dt, begin, n, first, last, room)  # held back
+    kept[FACES] = perform(parts, FLUXES, dt, begin, n, first, last, room)  # (24)
+    left1, left2 = (G1, G2) if shape.two_fluxes > 0.0 else (F1, F2)
     for k in range(n):
         room[H1 + k] = updated(room[H + k], lam, room[left1 + k - 1], room[F1 + k])  # h^{n+1}
     for k in range(n):
         room[QHAT + k] = updated(room[Q + k], lam, room[left2 + k - 1], room[F2 + k])
-    mended = sum_transported(model.projection, model, dt, place, room)
-    mended += settle(model.scheme, order, model.force, model.flux, ground, dt, place, room)  # J = dt g h^{n+1}
-    kept[MENDED] = mended + sum_forced(model.projection, model, dt, place, room)  # q^{n+1} = qhat + J, (20)
+    mended = perform(parts, TRANSPORTED, dt, begin, n, first, last, room) if shape.summed > 0.0 else 0.0
+    mended += perform(parts, SETTLE, dt, begin, n, first, last, room)  # J = dt g h^{n+1}, (21), (22)
     for k in range(n):
-        h1[place.begin + k], q1[place.begin + k] = room[H1 + k], room[Q1 + k]
+        room[Q1 + k] = room[QHAT + k] + room[J + k]  # q^{n+1}, (20)
+    kept[MENDED] = mended + (perform(parts, FORCED, dt, begin, n, first, last, room) if shape.summed > 0.0 else 0.0)
+    for k in range(n):
+        h1[begin + k], q1[begin + k] = room[H1 + k], room[Q1 + k]
     kept[IN_LEFT], kept[IN_RIGHT], kept[MADE] = room[left1 - 1], -room[F1 + n - 1], 0.0
-    if left1 != F1:  # where the two cells of a face take different fluxes, mass appears or vanishes
-        for k in range(0 if place.first and ground.left.kind != RING else -1, n - 1):
+    if shape.two_fluxes > 0.0:  # where the two cells of a face take different fluxes, mass appears or vanishes
+        for k in range(0 if first and shape.left.kind != RING else -1, n - 1):
             kept[MADE] += room[left1 + k] - room[F1 + k]
-    look(model, place, room, kept)
+    look(parts, place, room, kept)
 
 
 @routine()
-def shown_reach(model: Model, place: Place, room: Array) -> float:
-    """The fastest particle of all that cells show."""
-    top = 0.0
-    for k in range(place.n):
-        c = math.sqrt(2.0 * beta_of(model.ground.bed, place.begin + k) * max(room[HP + k], room[HM + k]))
-        top = max(top, max(abs(room[UP + k]), abs(room[UM + k])) + c)
-    return top
-
-
-@routine()
-def look(model: Model, place: Place, room: Array, kept: Array) -> None:
+def look(parts: Parts, place: Place, room: Array, kept: Array) -> None:
     """What a run wants to know of a new state."""
-    n, bad = place.n, 0
-    for k in range(n):
-        h, q = room[H1 + k], abs(room[Q1 + k])
-        bad += 0 if (abs(h) < math.inf) & (q < math.inf) else 1
-        room[MOVED + k] = q / h if h > 0.0 else 0.0
-        room[SPEED + k] = room[MOVED + k] + math.sqrt(2.0 * beta_of(model.ground.bed, place.begin + k) * max(h, 0.0))
-    kept[BAD] = bad
+    n = place.n
+    kept[BAD] = perform(parts, LOOK, 0.0, place.begin, n, False, False, room)
     negative, most, push, quick, top = -room[H1], room[H1], 0.0, 0.0, 0.0
     for k in range(n):
         negative, most = greatest(negative, -room[H1 + k]), greatest(most, room[H1 + k])
@@ -180,6 +186,66 @@ def look(model: Model, place: Place, room: Array, kept: Array) -> None:
     kept[MOVED_RIGHT] = changed(room, n - 2) + changed(room, n - 1)
 
 
+@routine()
+def judged(scheme: Any, ground: Any, dt: float, place: Place, room: Array) -> float:
+    """Judge the faces; 1 if the tile rests."""
+    return 1.0 if judge(scheme, ground, dt, place, room) else 0.0
+
+
+@routine()
+def shown(order: Any, ground: Any, dt: float, place: Place, room: Array) -> float:
+    """Write what cells show to their walls."""
+    show(order, ground, dt, place, room)
+    return 0.0
+
+
+@routine()
+def met(scheme: Any, order: Any, ground: Any, dt: float, place: Place, room: Array) -> float:
+    """Write the states at faces."""
+    face_states(scheme, order, ground, place, room)
+    return 0.0
+
+
+@routine()
+def sent(scheme: Any, order: Any, flux: Any, ground: Any, dt: float, place: Place, room: Array) -> float:
+    """Write the fluxes; returns the fastest particle of states made at faces, and of what cells show."""
+    top = fluxes(scheme, order, flux, ground, dt, place, room)
+    if is_sloped(order):
+        for k in range(place.n):
+            c = math.sqrt(2.0 * beta_of(ground.bed, place.begin + k) * max(room[HP + k], room[HM + k]))
+            top = max(top, max(abs(room[UP + k]), abs(room[UM + k])) + c)
+    return top
+
+
+@routine()
+def settled(
+    scheme: Any, order: Any, force: Any, flux: Any, ground: Any, dt: float, place: Place, room: Array
+) -> float:  # fmt: skip
+    """Write J; returns the mass that is made of heights below 0."""
+    return settle(scheme, order, force, flux, ground, dt, place, room)
+
+
+@routine()
+def looked(bed: Any, dt: float, place: Place, room: Array) -> float:
+    """Write |u| and |u| + c of the new state; returns how many of its numbers are none."""
+    bad = 0
+    for k in range(place.n):
+        h, q = room[H1 + k], abs(room[Q1 + k])
+        bad += 0 if (abs(h) < math.inf) & (q < math.inf) else 1
+        room[MOVED + k] = q / h if h > 0.0 else 0.0
+        room[SPEED + k] = room[MOVED + k] + math.sqrt(2.0 * beta_of(bed, place.begin + k) * max(h, 0.0))
+    return float(bad)
+
+
+@formula()
+def count_velocity(shape: Shape, fastest: float) -> float:
+    """The outermost velocity that (28) counts, where the fastest particle has |u| + c = `fastest`."""
+    if shape.dxi == 0.0 or fastest == 0.0:
+        return fastest
+    node = (math.ceil((fastest + shape.wider) / shape.dxi - shape.shift) - 0.5) * shape.dxi
+    return min(node, shape.outermost)
+
+
 @formula()
 def changed(room: Array, k: int) -> float:
     """Whether a cell is no more what it was."""
@@ -187,15 +253,15 @@ def changed(room: Array, k: int) -> float:
 
 
 @routine()
-def survey(model: Model, h: Array, q: Array, kept: Array, room: Array) -> None:
-    """The same of a state from which a march starts."""
+def survey(parts: Parts, h: Array, q: Array, kept: Array, room: Array) -> None:
+    """What `look` sees of a state from which a march starts."""
     nx = h.size - 4
     for tile in range(kept.shape[0]):
         begin, end = 2 + tile * TILE, 2 + min((tile + 1) * TILE, nx)
         for k in range(end - begin):
             room[H1 + k] = room[H + k] = h[begin + k]
             room[Q1 + k] = room[Q + k] = q[begin + k]
-        look(model, Place(begin, end - begin, False, False), room, kept[tile])
+        look(parts, Place(begin, end - begin, False, False), room, kept[tile])
         kept[tile, MOVED_LEFT] = kept[tile, MOVED_RIGHT] = 1.0
         kept[tile, RESTS] = 0.0
 
@@ -242,10 +308,10 @@ def next_dt(asked: Asked, planned: Array, top: float, fast: float, dx: float, se
     return (dt, asked.until, True) if abs(asked.until - after) <= 1e-9 * whole else (dt, after, False)
 
 
-@generic
+@kernel
 def march(
-    model: Model, asked: Asked, planned: Array, most: int, states: Any, rooms: Array, kept: Array, dts: Array,
-    seen: Array, fresh: bool,
+    shape: Shape, parts: Parts, lifting: Array, asked: Asked, planned: Array, most: int, states: Any, rooms: Array,
+    kept: Array, dts: Array, seen: Array, fresh: bool,
 ) -> tuple[int, int]:  # fmt: skip
     """At most `most` steps; returns how many were made, and why it ended.
 
@@ -253,16 +319,16 @@ def march(
     they take turns. `rooms` is one room for all tiles, or one for each. A step that is refused leaves all as it was.
     """
     (h, q), (h0, q0), (h1, q1) = states
-    dx, bed, ground = model.ground.dx, model.ground.bed, model.ground
+    dx, left, right = shape.dx, shape.left, shape.right
     nx, tiles, one_room = h.size - 4, kept.shape[0], rooms.shape[0] == 1
-    streams = max(speed_of(ground.left, beta_of(bed, 1)), speed_of(ground.right, beta_of(bed, nx + 2)))
+    streams = max(speed_of(left, shape.beta_left), speed_of(right, shape.beta_right))
     if fresh:
-        survey(model, h, q, kept, rooms[0])
+        survey(parts, h, q, kept, rooms[0])
     for steps in range(most):
-        fill(ground.left, h, q, 1, 1)
-        fill(ground.right, h, q, nx + 2, -1)
+        fill(left, h, q, 1, 1)
+        fill(right, h, q, nx + 2, -1)
         fast = largest(kept, FASTEST)
-        top = counted(model.flux, max(fast, streams))
+        top = count_velocity(shape, max(fast, streams))
         tick, left_over = seen[TICKS], seen[LEFT_OVER]
         dt, after, lands = next_dt(asked, planned, top, fast, dx, seen)
         courant, reason, dts[steps] = top * dt / dx, COUNTED, dt
@@ -284,7 +350,7 @@ def march(
             if whole or not asleep:
                 begin = 2 + tile * TILE
                 place = Place(begin, min(TILE, nx + 2 - begin), first, last)
-                sweep(model, place, h, q, dt, h1, q1, whole, rooms[0 if one_room else tile], kept[tile])
+                sweep(shape, parts, place, h, q, dt, h1, q1, whole, rooms[0 if one_room else tile], kept[tile])
                 seen[SWEPT] += 0.0 if kept[tile, RESTS] > 0.0 else place.n
             reach, still = max(reach, kept[tile, FACES]), still & (kept[tile, CHANGE] == 0.0)
         seen[REACH] = max(seen[REACH], reach)
@@ -299,10 +365,10 @@ def march(
             return steps, reason
         h, q, h0, q0, h1, q1 = h1, q1, h, q, h0, q0
         seen[BEFORE], seen[T] = seen[T], after
-        note(ground.left.kind == RING, kept, dt, dx, courant, seen)
+        note(left.kind == RING, kept, dt, dx, courant, seen)
         high = largest(kept, MOST_H)
         seen[STILL] = seen[STILL] + 1.0 if largest(kept, MOST_Q) <= asked.still + asked.still_per_h * high else 0.0
-        up = lift_off(bed, h, q, high, after, seen) if varies(bed) and asked.lifts > 0.0 else False
+        up = lift_off(lifting, h, q, high, after, seen) if asked.lifts > 0.0 else False
         if up and asked.lifts > 1.0:
             return steps + 1, LIFTED
         creeps = seen[STILL] >= RESTING and largest(kept, CHANGE) <= ROUNDING * high
@@ -342,12 +408,12 @@ def note(ring: bool, kept: Array, dt: float, dx: float, courant: float, seen: Ar
 
 
 @routine()
-def lift_off(bed: Any, h: Array, q: Array, high: float, t: float, seen: Array) -> bool:
+def lift_off(lifting: Array, h: Array, q: Array, high: float, t: float, seen: Array) -> bool:
     """Count the cells that left the ground; says whether any has."""
     up = 0
     for i in range(2, h.size - 2):
         if h[i] > THIN * high:
-            normal = lift(bed, i, q[i] / h[i])
+            normal = lifting[0, i] + lifting[1, i] * (q[i] / h[i]) ** 2
             seen[LIFT_LEAST] = min(seen[LIFT_LEAST], normal)
             if normal < 0.0:
                 up += 1

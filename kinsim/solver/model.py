@@ -9,12 +9,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import InputError
-from ..kernel import plain
-from ..kinetic.equilibrium import EQUILIBRIA, weights
-from ..kinetic.force import FORCES, Unforced
+from ..kernel import Apart, plain, routine
+from ..kinetic.equilibrium import EQUILIBRIA, is_sampled, weights, wider
+from ..kinetic.force import FORCES, After, Before, Unforced
 from ..kinetic.gauss_jacobi import gauss_jacobi
-from ..kinetic.nodes import Nodes
-from ..kinetic.rows import FluxDifference, Resummed
+from ..kinetic.nodes import Nodes, Spread
+from ..kinetic.rows import FluxDifference, Resummed, sum_forced, sum_transported
 from ..kinetic.velocity import Fitted, Grid
 from ..macroscopic.closed_form import ClosedForm
 from ..macroscopic.outside import outside
@@ -22,14 +22,16 @@ from ..method import LIMITERS, Kinetic, Macroscopic
 from ..model.boundary import Boundary, Inflow, ends
 from ..model.ground import Flat, Smooth
 from ..scene import Scene
-from ..schemes.bed import Curve, Plane
+from ..schemes.bed import Curve, Plane, beta_of
 from ..schemes.friction import law_of
 from ..schemes.order import First, Second
+from ..schemes.questions import acts_before, has_two_fluxes, is_sloped
 from ..schemes.reflecting import Reflecting
 from ..schemes.scheme1 import Upwind
 from ..schemes.scheme4 import Held
 from ..schemes.scheme23 import Balanced, CoupledByCell, CoupledByFace
-from ..schemes.tile import OPEN, RING, STREAM, WALL, End, Ground, Model
+from ..schemes.tile import OPEN, RING, STREAM, WALL, End, Ground, Model, Place
+from .march import Shape, judged, looked, met, sent, settled, shown
 
 KINDS = {"open": OPEN, "wall": WALL, "periodic": RING}
 
@@ -125,3 +127,52 @@ def falling(scene: Scene, number: float) -> float:
     """The speed that keeps a grain which starts to slide from passing more than `number` cells in a step."""
     drive = max(float(np.max(np.abs(scene.pull) - scene.resistance)), 0.0)
     return math.sqrt(0.5 * number * scene.cells.dx * drive)
+
+
+@routine()
+def nothing(dt: float, place: Place, room: Array) -> float:
+    """Of what a scheme has no need."""
+    return 0.0
+
+
+def parts_of(model: Model) -> list[Apart]:
+    """The parts of a step, compiled for the classes that each of them reads."""
+    scheme, order, flux, force, projection, ground = model
+    sloped, reads = is_sloped(order), Before() if acts_before(force) else After()
+
+    def part(function: Any, *values: Any) -> Apart:
+        return Apart(function, values, Place)
+
+    none = part(nothing)
+    judges, meets = isinstance(scheme, Held | Reflecting), isinstance(scheme, Held)
+    summed = isinstance(projection, Resummed)
+    return [
+        part(judged, scheme, ground) if judges else none,
+        part(shown, order, ground) if sloped else none,
+        part(met, scheme, order, ground) if meets else none,
+        part(sent, scheme, order, flux, ground),
+        part(sum_transported, model) if summed else none,
+        part(settled, scheme, order, reads, _extent_of(flux), ground),
+        part(sum_forced, model) if summed else none,
+        part(looked, ground.bed),
+    ]
+
+
+def _extent_of(flux: Any) -> Any:
+    """A flux that has the same extent, and no more to be compiled for than that."""
+    return Spread(flux.equilibrium, flux.dxi) if isinstance(flux, Nodes) else ClosedForm()
+
+
+def shape_of(model: Model) -> Shape:
+    """What the march itself asks of a model."""
+    ground, flux, nx = model.ground, model.flux, np.size(getattr(model.ground.bed, "s", 0.0))
+    dxi = shift = wide = outermost = 0.0
+    if isinstance(flux, Nodes):
+        dxi, outermost = flux.dxi, (flux.w1.size - 0.5) * flux.dxi
+        shift, wide = (0.5, 0.0) if is_sampled(flux.equilibrium) else (0.0, wider(flux.equilibrium, flux.dxi))
+    betas = (beta_of(ground.bed, 1), beta_of(ground.bed, nx - 2)) if nx > 1 else (ground.bed.beta, ground.bed.beta)
+    two, sloped, summed = has_two_fluxes(model.scheme), is_sloped(model.order), isinstance(model.projection, Resummed)
+    return Shape(
+        ground.dx, ground.left, ground.right, float(two), float(sloped), float(summed), dxi, shift, wide, outermost,
+        *map(float, betas),
+    )  # fmt: skip

@@ -13,10 +13,10 @@ from ..arrays import Array
 from ..clock import AnyClock, Courant, Fixed, Replay
 from ..kinetic.velocity import Fitted, Grid, Uniform, Window
 from ..method import Kinetic, Macroscopic
+from ..model.ground import Smooth
 from ..scene import Scene
-from ..schemes.bed import beta_of, varies
-from ..schemes.questions import counted
-from ..schemes.tile import SIZE, TILE
+from ..schemes.bed import Curve
+from ..schemes.tile import SIZE, TILE, Model
 from .march import (
     BEFORE,
     BEYOND,
@@ -38,7 +38,7 @@ from .march import (
     march,
     speed_of,
 )  # fmt: skip
-from .model import falling, model_of, strongest
+from .model import falling, model_of, parts_of, shape_of, strongest
 from .stages import Stages
 
 SHORTEST = 1e-9
@@ -122,7 +122,13 @@ class Solver:
             self.grid = velocity.grid(reach)
         elif isinstance(velocity, Window):
             self.grid = velocity.grid(2.0 * reach)
-        self.model = model_of(self.scene, self.method, self.grid)
+        self._take(model_of(self.scene, self.method, self.grid))
+
+    def _take(self, model: Model) -> None:
+        self.model, self._parts, self._shape = model, parts_of(model), shape_of(model)
+        self._rows = np.array([part.row for part in self._parts], dtype=np.int64)
+        bed = model.ground.bed
+        self._lifting = np.array([bed.n, bed.bend]) if isinstance(bed, Curve) else np.zeros((2, 1))
 
     def put(self, h: Array, q: Array) -> None:
         """Stand at the state (h, q), each of shape (nx,)."""
@@ -159,9 +165,9 @@ class Solver:
     @property
     def counted(self) -> float:
         """The outermost velocity that (28) counts."""
-        bed, left, right = self.model.ground.bed, self.model.ground.left, self.model.ground.right
-        streams = speed_of(left, beta_of(bed, 1)), speed_of(right, beta_of(bed, self._nx + 2))
-        return float(counted(self.model.flux, max(self.fastest, *streams)))
+        shape = self._shape
+        streams = speed_of(shape.left, shape.beta_left), speed_of(shape.right, shape.beta_right)
+        return float(count_velocity(shape, max(self.fastest, *streams)))
 
     @property
     def quickest(self) -> float:
@@ -198,8 +204,9 @@ class Solver:
 
     def _go(self, asked: Asked, planned: Array, most: int, rooms: Array, dts: Array) -> tuple[int, int]:
         steps, reason = march(
-            self.model, asked, planned, most, tuple(self._states), rooms, self._kept, dts, self.seen, self._fresh
-        )
+            self._shape, self._rows, self._lifting, asked, planned, most, tuple(self._states), rooms, self._kept, dts,
+            self.seen, self._fresh,
+        )  # fmt: skip
         if steps < most:
             self.attempted = float(dts[steps])
         if steps:
@@ -230,7 +237,7 @@ class Solver:
                 tight = bound - 1.5 * grid.dxi
         slow = 1e-3 * grid.dxi if grid is not None else 0.0
         lifts = 0.0
-        if varies(self.model.ground.bed) and self.scene.ground.bends:  # type: ignore[union-attr]
+        if isinstance(self.scene.ground, Smooth) and self.scene.ground.bends:
             lifts = 2.0 if self.scene.chute.lifting == "stop" else 1.0  # type: ignore[union-attr]
         return Asked(
             dt=clock.dt if isinstance(clock, Fixed) else nan, number=number,
@@ -266,12 +273,15 @@ class Solver:
         other._states = [(np.zeros(self._nx + 4), np.zeros(self._nx + 4)) for _ in range(3)]
         other._kept, other.seen, other.force = np.zeros((self._tiles, KEPT)), fresh_seen(), force
         if is_stored(self.method):
-            other.model = model_of(self.scene, self.method, self.grid)
+            other._take(model_of(self.scene, self.method, self.grid))
         other.put(h, q)
         rooms = np.zeros((self._tiles, SIZE))
         asked = other._asked(Fixed(dt, 1), math.inf, math.inf)._replace(bound=math.inf, room=math.inf)
         report = other.model.flux.report.copy() if self.grid is not None else np.empty(0)
-        march(other.model, asked, np.empty(0), 1, tuple(other._states), rooms, other._kept, np.empty(1), other.seen, True)
+        march(
+            other._shape, other._rows, self._lifting, asked, np.empty(0), 1, tuple(other._states), rooms, other._kept,
+            np.empty(1), other.seen, True,
+        )  # fmt: skip
         if self.grid is not None:
             other.model.flux.report[:] = report
         return Stages(other, rooms, dt, t)

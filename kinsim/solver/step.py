@@ -13,8 +13,7 @@ from ..kinetic.equilibrium import Status
 from ..macroscopic.closed_form import half_moments_of_cells
 from ..method import Kinetic, Macroscopic
 from ..scene import Scene
-from ..schemes.questions import left_walls
-from ..schemes.tile import F1
+from ..schemes.questions import has_two_fluxes
 from .march import REACH
 from .solver import Solver
 from .stages import Books, Stages
@@ -86,7 +85,7 @@ class Step:
         plus = [stages.ghosted(name) for name in ("h_plus", "u_plus")] if sloped else [h, u]
         minus = [stages.ghosted(name) for name in ("h_minus", "u_minus")] if sloped else [h, u]
         upwind = Faces(plus[0][:-1], plus[1][:-1], minus[0][1:], minus[1][1:])
-        two = left_walls(solver.model.scheme)[0] != F1 and scheme != 4
+        two = has_two_fluxes(solver.model.scheme) and scheme != 4
         balanced = None
         if two:
             balanced = Faces(stages["h_mean"], u[:-1], stages["h_mean"], u[1:])
