@@ -74,12 +74,12 @@ def formula(*flags: Literal["contract", "reassoc", "nsz", "nnan", "arcp"]) -> Ca
     where all arguments are the same in a mirrored flow, that is for functions of h and |u|; "reassoc" and "nsz" take a
     sum over a row in any order.
     """
-    return register_jitable(**INSIDE, forceinline=True, fastmath=set(flags))  # type: ignore[no-any-return]
+    return register_jitable(**INSIDE, forceinline=True, fastmath=set(flags))
 
 
 def routine(*flags: Literal["contract", "reassoc", "nsz", "nnan", "arcp"]) -> Callable[[F], F]:
     """A longer such function, compiled by itself and called."""
-    return register_jitable(**INSIDE, fastmath=set(flags))  # type: ignore[no-any-return]
+    return register_jitable(**INSIDE, fastmath=set(flags))
 
 
 def question(default: F) -> F:
@@ -108,7 +108,7 @@ def _question(default: F, options: dict[str, Any]) -> F:
 
 def at(value: Any, i: int) -> float:
     """The number of place i: of one number for all places, or of an array."""
-    return value[i] if isinstance(value, np.ndarray) else value  # type: ignore[no-any-return]
+    return value[i] if isinstance(value, np.ndarray) else value
 
 
 @overload(at, jit_options=INSIDE | {"forceinline": True}, strict=False)
@@ -142,7 +142,7 @@ def kernel(function: F) -> F:
     """A function of arrays and numbers, compiled when it is first called. Division by zero gives infinity."""
     if config.DISABLE_JIT:
         return function
-    return _dispatcher(function)  # type: ignore[no-any-return]
+    return _dispatcher(function)
 
 
 def generic(function: F) -> F:
@@ -190,7 +190,17 @@ def plain(value: Any) -> Any:
 def shortened(error: Exception) -> str:
     """The line of a numba error that says what is wrong, and the line of code it is in."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    skipped = ("Failed in", "During:", "File", "<source", "- Resolution", "This error", "Overload", "There are", "Rejected")
+    skipped = (
+        "Failed in",
+        "During:",
+        "File",
+        "<source",
+        "- Resolution",
+        "This error",
+        "Overload",
+        "There are",
+        "Rejected",
+    )
     said = [line for line in lines if not line.startswith(skipped)]
     place = next((line for line in reversed(lines) if line.startswith("File") and "line " in line), "")
     number = place.split("line ")[-1].rstrip("):")
@@ -201,7 +211,7 @@ def shortened(error: Exception) -> str:
 
 
 class Apart:
-    """A function of values and of a place in a work array, compiled for the classes of the values and called by address.
+    """A function of values and of a place in a work array, compiled for the classes of the values, called by address.
 
     A kernel that calls such parts is compiled once for all classes, and the parts of many variants add up instead of
     multiplying. Numbers and arrays of the values stand in tables, so that all parts have the same signature:
@@ -222,8 +232,11 @@ class Apart:
         self._places = np.array(places or [(0, 0, 0)], dtype=np.int64).reshape(-1)
         if config.DISABLE_JIT:
             self.address = len(_interpreted)
-            _interpreted.append(lambda dt, begin, n, first, last, room: function(
-                *values, dt, place(begin, n, bool(first), bool(last)), room))
+            _interpreted.append(
+                lambda dt, begin, n, first, last, room: function(
+                    *values, dt, place(begin, n, bool(first), bool(last)), room
+                )
+            )
         else:
             self.address = self._compiled(function, given, names, tuple(_classes_of(values)))
         self.row = (self.address, self._table.ctypes.data, self._places.ctypes.data)
@@ -311,7 +324,9 @@ def _call(typing: Any, address: Any, given: Any) -> Any:
     return types.float64(types.int64, types.Tuple(PART.args)), build
 
 
-def perform(rows: np.ndarray, which: int, dt: float, begin: int, n: int, first: bool, last: bool, room: np.ndarray) -> float:
+def perform(
+    rows: np.ndarray, which: int, dt: float, begin: int, n: int, first: bool, last: bool, room: np.ndarray
+) -> float:
     """Call the part in row `which` of a table of `Apart.row`."""
     return _interpreted[int(rows[which, 0])](dt, begin, n, first, last, room)
 

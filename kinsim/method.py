@@ -38,7 +38,9 @@ ProjectionName = Literal["flux-difference", "re-summed"]
 
 def _flux(given: Any) -> Any:
     if given is not None and not callable(given):
-        raise ValueError(f"flux = {given!r} is no function; give flux(h_left, u_left, h_right, u_right, beta) -> (F1, F2)")
+        raise ValueError(
+            f"flux = {given!r} is no function; give flux(h_left, u_left, h_right, u_right, beta) -> (F1, F2)"
+        )
     return given
 
 

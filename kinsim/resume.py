@@ -56,7 +56,9 @@ def resume(
     given = {name: part for name, part in (("scene", scene), ("method", method)) if part is not None}
     request = _request(path, about, given)
     try:
-        cadence = Cadence(request["clock"], **{name: request["cadence"].get(name) for name in ("save_every", "save_at", "rows")})
+        cadence = Cadence(
+            request["clock"], **{name: request["cadence"].get(name) for name in ("save_every", "save_at", "rows")}
+        )
         simulation = Simulation(
             request["scene"], request["method"], request["clock"], cadence, request["force"],
             request["dumps"], request["causes"], observers,

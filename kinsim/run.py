@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 __all__ = ["ENDED", "Run", "Verdict", "VerdictKind", "describe", "description"]
 
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """A finished or stopped run.

@@ -89,7 +89,11 @@ def source_hash(part: Any) -> str:
         text = inspect.getsource(part).encode()
     except (OSError, TypeError):
         codes = [part] if hasattr(part, "__code__") else list(vars(part).values())
-        text = b"".join(code.__code__.co_code + repr(code.__code__.co_consts).encode() for code in codes if hasattr(code, "__code__"))
+        text = b"".join(
+            code.__code__.co_code + repr(code.__code__.co_consts).encode()
+            for code in codes
+            if hasattr(code, "__code__")
+        )
     return hashlib.sha256(text).hexdigest()
 
 

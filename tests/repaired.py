@@ -10,7 +10,6 @@ import pytest
 
 from kinsim import Cells, ConstantSlope, Coulomb, Fitted, Fixed, Kinetic, Macroscopic, Profile, Scene, Uniform
 from kinsim.exact import random_pile
-from kinsim.stepper import largest_courant as limit
 
 EPS = float(np.finfo(float).eps)
 DELTA = 0.3
@@ -70,7 +69,7 @@ def steps(scene: Scene, method: Macroscopic | Kinetic, count: int, fastest: floa
     """Steps near the limit for masses up to `fastest`."""
     h, _ = scene.initial()
     speed = fastest + math.sqrt(2 * scene.beta * h.max()) * 1.05
-    return Fixed(0.9 * limit(method) * scene.cells.dx / speed, count)
+    return Fixed(0.9 * scene.cells.dx / speed, count)
 
 
 def wild(rng: np.random.Generator, count: int = 60) -> tuple[np.ndarray, np.ndarray]:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from kinsim import Cells, ConstantSlope, Coulomb, Frictionless, Profile, Scene
+from kinsim.kernel import generic
+from kinsim.kinetic.force import push
 
 BETA = 0.4
 """beta of a scene on flat ground with epsilon = 0.4, k = 1."""
@@ -49,3 +52,27 @@ def ghosted(scene: Scene, array: np.ndarray, odd: bool = False) -> np.ndarray:
 def incline(h: np.ndarray, u: np.ndarray, zeta: float) -> Scene:
     """Periodic cells with h and u on an incline with friction."""
     return replace(scene_with(h, u), chute=ConstantSlope(zeta), friction=Coulomb(0.3), boundary="periodic")
+
+
+@generic
+def push_each(
+    force: Any, f: np.ndarray, M: np.ndarray, J: np.ndarray, h: np.ndarray, dxi: float, out: np.ndarray,
+    offset: np.ndarray,
+) -> float:  # fmt: skip
+    """Hand the impulse J of each row over to f by a force of `kinsim.kinetic.force`; returns what left the window."""
+    n, gone = f.shape[1], 0.0
+    row, of_M = np.zeros(n + 4), np.zeros(n + 4)
+    for i in range(f.shape[0]):
+        row[2 : n + 2] = f[i]
+        of_M[2 : n + 2] = M[i]
+        offset[i], lost = push(force, row, of_M, J[i], h[i], dxi, out, i)
+        gone += lost
+    return gone
+
+
+def upwind(f: np.ndarray, xi: np.ndarray, lam: float, periodic: bool = False) -> np.ndarray:
+    """Free upwind transport of rows of f, written down anew."""
+    ends = (f[-1:], f[:1]) if periodic else (f[:1], f[-1:])
+    ghosted = np.vstack([ends[0], f, ends[1]])
+    at_face = np.where(xi > 0, ghosted[:-1], ghosted[1:])
+    return f - lam * xi * (at_face[1:] - at_face[:-1])

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 
 from kinsim import Cells, Fixed, Kinetic, Profile, Scene, Uniform, simulate
-from kinsim.kinetic.equilibrium import EQUILIBRIA, Status
+from kinsim.kinetic.equilibrium import Status
+from kinsim.kinetic.equilibrium import fill as fill_rows
 from kinsim.kinetic.velocity import Grid
 
 BETA = 0.4
 
 
 def fill(h: np.ndarray, u: np.ndarray, grid: Grid) -> tuple[np.ndarray, Status]:
-    rows, status = np.empty((h.size, grid.count)), Status.empty(h.size)
-    EQUILIBRIA["entropic"].fill(h, u, h, u, BETA, grid, rows, status)
-    return rows, status
+    status = Status.empty(h.size)
+    return fill_rows("entropic", h, u, h, u, BETA, grid, status), status
 
 
 @pytest.mark.parametrize("n", [16, 64, 256])

@@ -10,7 +10,7 @@ from repaired import EPS, wild
 from scipy.integrate import quad
 from states import BETA, random_states, scene_with
 
-from kinsim import Courant, Macroscopic, step
+from kinsim import Macroscopic, step
 from kinsim.errors import InputError
 from kinsim.measure.entropy import Entropy, entropy, entropy_flux, of_state
 
@@ -52,9 +52,7 @@ def taken(method: Macroscopic, seed: int, number: float, states=wild, zeta: floa
     h, u = states(np.random.default_rng(seed))
     scene = scene_with(h, u, zeta=zeta, delta=0.3, boundary="wall" if seed % 2 else "periodic")
     speed = float(np.max(np.abs(u) + np.sqrt(2 * scene.beta * h)))
-    dt = Courant(number, 1e9).next_dt(0, 0.0, speed, scene.cells.dx)
-    assert dt is not None
-    found = entropy(scene, step(scene, method, h, h * u, dt))
+    found = entropy(scene, step(scene, method, h, h * u, number * scene.cells.dx / speed))
     return found, 64 * EPS * float((h * speed**2).max())
 
 

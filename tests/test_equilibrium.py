@@ -10,7 +10,7 @@ import pytest
 from states import BETA, random_states, scene_with
 
 from kinsim import Kinetic, Macroscopic, Uniform, step
-from kinsim.step import Step
+from kinsim.solver.step import Step
 
 EPS = float(np.finfo(float).eps)
 TINY_STEP = 1e-9

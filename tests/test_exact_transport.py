@@ -7,11 +7,11 @@ import math
 
 import numpy as np
 import pytest
+from states import push_each, upwind
 
 from kinsim import Cells, InputError
 from kinsim.exact import FreeTransport
-from kinsim.kinetic.shift import shift_linear
-from kinsim.kinetic.transport import transport
+from kinsim.kinetic.force import FORCES
 
 EPS = float(np.finfo(float).eps)
 G = 0.7
@@ -109,12 +109,10 @@ def rooms(count: int, g: float) -> float:
     steps = math.ceil(end * 3 / (0.8 * cells.dx))
     dt = end / steps
     free = FreeTransport(cloud, g, points=4)
-    f, moved = free.averages(cells, xi, 0.0), np.empty((count, middle.size))
-    faces, never = np.empty((count + 1, middle.size)), np.zeros(count, dtype=bool)
+    f, J, one = free.averages(cells, xi, 0.0), np.full(count, g * dt), np.ones(count)
     for _ in range(steps):
-        ghosted = np.vstack([f[:1], f, f[-1:]])
-        transport(ghosted, faces, never, never, middle, dt / cells.dx, moved)
-        shift_linear(moved, np.full(count, g * dt), np.ones(count), dxi, f)
+        moved = upwind(f, middle, dt / cells.dx)
+        push_each(FORCES["shift-linear"], moved, moved, J, one, dxi, f, np.zeros(count))
     return float(np.abs(f - free.averages(cells, xi, end)).sum() * cells.dx * dxi)
 
 

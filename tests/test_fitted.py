@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from conftest import EPS, SCENES
-from states import BETA, scene_with
+from states import BETA
 
 from kinsim import (
     Fitted,
@@ -14,9 +14,8 @@ from kinsim import (
     Macroscopic,
     simulate,
 )
-from kinsim.kinetic.fitted import gauss_jacobi, half_moments_of_cells
-from kinsim.macroscopic.half_moments import half_moments_closed
-from kinsim.stepper import Stepper
+from kinsim.kinetic.gauss_jacobi import gauss_jacobi, measure
+from kinsim.macroscopic.closed_form import half_moments_closed, half_moments_of_cells
 
 
 def moments(h: np.ndarray, u: np.ndarray) -> np.ndarray:
@@ -36,9 +35,8 @@ def all_regimes(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.nd
 def test_fitted_nodes_reach_the_closed_form(count: int, reach: float, rng: np.random.Generator) -> None:
     """10^5 random states in all regimes, on the flux scale h (|u| + c)^k; both sides add up to the total."""
     h, u = all_regimes(rng, 100_000)
-    s, W = gauss_jacobi(count)
     fitted = np.empty((4, h.size))
-    half_moments_of_cells(h, u, BETA, s, W, np.empty((3, h.size)), fitted)
+    half_moments_of_cells(gauss_jacobi(count), h, u, np.full(h.size, BETA), fitted)
     closed = np.array([half_moments_closed(a, b, BETA) for a, b in zip(h, u, strict=True)]).T
     speed = np.abs(u) + np.sqrt(2 * BETA * h)
     scale = h * np.array([speed, speed**2, speed, speed**2])
@@ -51,8 +49,7 @@ def test_fitted_nodes_reach_the_closed_form(count: int, reach: float, rng: np.ra
 def test_fitted_measure_carries_the_small_side(rng: np.random.Generator) -> None:
     """Nodes lie on the side that holds less, masses are positive, and their first two moments are the half moments."""
     h, u = all_regimes(rng, 300)
-    stepper = Stepper(scene_with(h, u), Kinetic(1, Fitted(8)))
-    nodes, masses = stepper.wing.measure(h, u)
+    nodes, masses = measure(8, h, u, BETA)
     assert (masses >= 0).all()
     assert (nodes * np.where(u == 0, -1.0, u)[:, None] <= 0).all()
     closed = np.array([half_moments_closed(a, b, BETA) for a, b in zip(h, u, strict=True)])

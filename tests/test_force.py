@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from states import push_each
 
-from kinsim.kinetic.shift import shift_linear
+from kinsim.kinetic.force import FORCES, moved
 
 EPS = float(np.finfo(float).eps)
 N, DXI = 200, 0.03
@@ -16,10 +17,11 @@ XI = (np.arange(N) - N / 2 + 0.5) * DXI
 
 def shift(f: np.ndarray, distance: np.ndarray | float, dxi: float = DXI) -> tuple[np.ndarray, float]:
     """Each row moved by `distance`; with h1 = 0.5 to see that J is divided by it."""
-    f = np.atleast_2d(f)
-    out = np.full_like(f, np.nan)
+    f = np.ascontiguousarray(np.atleast_2d(f))
+    out, offset = np.full_like(f, np.nan), np.full(len(f), np.nan)
     h1 = np.full(len(f), 0.5)
-    lost = shift_linear(f, np.broadcast_to(distance, len(f)) * h1, h1, dxi, out)
+    lost = push_each(FORCES["shift-linear"], f, f, np.broadcast_to(distance, len(f)) * h1, h1, dxi, out, offset)
+    assert (offset == 0.0).all()
     return out, lost
 
 
@@ -84,6 +86,7 @@ def test_rows_are_shifted_each_by_its_own_impulse(rng: np.random.Generator) -> N
     out, _ = shift(f, np.array([0.0, 0.5, -1.1]))
     for i, distance in enumerate((0.0, 0.5, -1.1)):
         np.testing.assert_array_equal(out[i], shift(f[i], distance)[0][0])
+    np.testing.assert_array_equal(moved(f, np.array([0.0, 0.5, -1.1]), DXI), out)
 
 
 def test_two_shifts_and_back_do_not_sharpen(rng: np.random.Generator) -> None:
@@ -95,6 +98,8 @@ def test_two_shifts_and_back_do_not_sharpen(rng: np.random.Generator) -> None:
 
 def test_dry_rows_are_left_alone() -> None:
     """No mass, nothing to push: no division by zero, whatever the impulse."""
-    f, out = np.zeros((2, 8)), np.full((2, 8), np.nan)
-    assert shift_linear(f, np.array([0.3, -0.3]), np.array([0.0, -1e-20]), 0.1, out) == 0.0
-    assert (out == 0).all()
+    for force in FORCES.values():
+        f, out, offset = np.zeros((2, 8)), np.full((2, 8), np.nan), np.full(2, np.nan)
+        assert push_each(force, f, f, np.array([0.3, -0.3]), np.array([0.0, -1e-20]), 0.1, out, offset) == 0.0
+        assert (out == 0).all()
+        assert (offset == 0).all()

@@ -9,7 +9,7 @@ import pytest
 from states import ghosted, random_states, scene_with
 
 from kinsim import Kinetic, Macroscopic, Uniform, step
-from kinsim.balance.impulse import acceleration, static_acceleration
+from kinsim.schemes.formulas import acceleration, static_acceleration
 
 EPS = float(np.finfo(float).eps)
 GROUNDS = [(0.0, 0.3), (0.2, 0.1), (-0.2, 0.3), (0.1, None), (0.0, None)]
@@ -26,7 +26,7 @@ def test_static_friction_is_bounded_by_dynamic() -> None:
     """(22): what holds the slope, between sin zeta - R and sin zeta + R."""
     s, R = 0.1, 0.3
     for slope in np.linspace(-1, 1, 41):
-        held = static_acceleration(slope, s, R)
+        held = static_acceleration(0.0, 2.0 * slope, s, R, 1.0, 1.0)
         assert held == np.clip(slope, s - R, s + R)
 
 

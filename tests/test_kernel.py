@@ -5,76 +5,93 @@ from __future__ import annotations
 import ast
 import os
 import shutil
-import stat
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+import pytest
+
 import kinsim
+from kinsim import Blocks, Cells, ConstantSlope, Coulomb, Fixed, Frictionless, Macroscopic, Scene, simulate
 from kinsim.kernel import stamped
 
 PACKAGE = Path(kinsim.__file__).parent
 
 SMALL = """
-import sys
-{before}
-import numpy as np
-import kinsim
-from kinsim.macroscopic.half_moments import half_moments_closed, small_side
-half_moments_closed(0.5, 0.1, 0.4)
-print(repr(half_moments_closed(0.5, 0.1, 0.4)[1]))
-print(sum(half_moments_closed.stats.cache_misses.values()), sum(half_moments_closed.stats.cache_hits.values()))
+from kinsim import Blocks, Cells, ConstantSlope, Coulomb, Fixed, Macroscopic, Scene, simulate
+from kinsim.progress import Watched
+scene = Scene(Cells(0, 1, 20), Blocks((0.5,), (1, 0.5)), ConstantSlope(0.4), Coulomb(0.2), epsilon=0.4)
+with Watched({quiet}):
+    print(simulate(scene, Macroscopic(4), Fixed(1e-3, 20)).h[-1].tobytes().hex())
 """
+"""A run that tells when it compiles, and prints its last heights."""
 
-WHOLE = """
-import gc, sys
-import kinsim
-from numba.core.dispatcher import Dispatcher
-from kinsim import Blocks, Cells, ConstantSlope, Coulomb, Fixed, Kinetic, Macroscopic, Scene, Uniform, simulate
-scene = Scene(Cells(0, 1, 8), Blocks((0.5,), (1, 0.5)), ConstantSlope(0.1), Coulomb(0.2), epsilon=0.4)
-for scheme in (1, 2, 3):
-    simulate(scene, Macroscopic(scheme), Fixed(1e-3, 3))
-    for equilibrium in ("cell-average", "sampled"):
-        simulate(scene, Kinetic(scheme, Uniform(8), equilibrium), Fixed(1e-3, 3))
-kernels = [thing for thing in gc.get_objects() if isinstance(thing, Dispatcher)]
-kernels = [kernel for kernel in kernels if kernel.py_func.__module__.startswith("kinsim")]
-print(sum(sum(k.stats.cache_misses.values()) for k in kernels), sum(sum(k.stats.cache_hits.values()) for k in kernels))
-"""
+TOLD = "compiling kernels, only this once"
+
+SCENE = Scene(Cells(0, 1, 20), Blocks((0.5,), (1, 0.5)), ConstantSlope(0.4), Coulomb(0.2), epsilon=0.4)
+
+STAMP = "from kinsim.kernel import source_stamp\nprint(source_stamp())"
 
 
-def python(code: str, cache: Path | None, path: Path | None = None, stream: str = "stdout", **more: str) -> str:
-    """Run `code` in a process of its own, and return what it prints."""
+def started(code: str, cache: Path | None, path: Path | None = None, **more: str) -> subprocess.Popen[str]:
+    """Begin to run `code` in a process of its own."""
     env = {**os.environ, **more}
     env.pop("KINSIM_CACHE_DIR", None)
     if cache is not None:
         env["KINSIM_CACHE_DIR"] = str(cache)
     if path is not None:
         env["PYTHONPATH"] = str(path)
-    done = subprocess.run([sys.executable, "-P", "-c", code], env=env, capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stderr
-    return str(getattr(done, stream))
+    asked = [sys.executable, "-P", "-c", code]
+    return subprocess.Popen(asked, env=env, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def test_second_process_compiles_nothing(tmp_path: Path) -> None:
-    """All kernels of a run with both wings and all schemes are found again."""
-    misses, _ = map(int, python(WHOLE, tmp_path).split())
-    assert misses > 10
-    misses, hits = map(int, python(WHOLE, tmp_path).split())
-    assert misses == 0
-    assert hits > 10
-    files = sorted(tmp_path.rglob("*"))
-    python(WHOLE, tmp_path)
-    assert sorted(tmp_path.rglob("*")) == files  # and the cache does not grow
+def ended(process: subprocess.Popen[str]) -> tuple[str, list[str]]:
+    """What it printed, and the lines on its error stream."""
+    out, err = process.communicate(timeout=600)
+    assert process.returncode == 0, err
+    return out, err.splitlines()
 
 
-def test_compiling_is_told_in_a_line_and_only_where_there_is_something_to_compile(tmp_path: Path) -> None:
-    """On the error stream, and not in --quiet."""
-    code = "from kinsim.progress import Watched\n"
-    code += "from kinsim.balance.impulse import acceleration\n"
-    code += "with Watched({quiet}): acceleration(1.0, 0.1, 0.2)\n"
-    told = "compiling kernels, only this once"
-    for cache, quiet, said in (("one", False, [told]), ("one", False, []), ("two", True, [])):
-        assert python(code.format(quiet=quiet), tmp_path / cache, stream="stderr").splitlines() == said
+def python(code: str, cache: Path | None, path: Path | None = None, **more: str) -> str:
+    """Run `code` in a process of its own, and return what it prints."""
+    return ended(started(code, cache, path, **more))[0]
+
+
+def heights(printed: str) -> np.ndarray:
+    """The numbers of `SMALL`."""
+    return np.frombuffer(bytes.fromhex(printed.split()[-1]))
+
+
+@pytest.fixture(scope="module")
+def expected() -> np.ndarray:
+    """Heights of the small run in this process."""
+    return simulate(SCENE, Macroscopic(4), Fixed(1e-3, 20)).h[-1]
+
+
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory: pytest.TempPathFactory, expected: np.ndarray) -> Path:
+    """A cache that two processes have filled at once; both came to the right numbers."""
+    folder = tmp_path_factory.mktemp("filled")
+    processes = [started(SMALL.format(quiet=False), folder) for _ in range(2)]
+    for process in processes:
+        out, err = ended(process)
+        np.testing.assert_array_equal(heights(out), expected)
+        assert err == [TOLD]
+    assert not [path for path in code_in(folder) if path.suffix != ".code"]
+    return folder
+
+
+@pytest.fixture
+def cache(filled: Path, tmp_path: Path) -> Path:
+    """The same, to break things in."""
+    return Path(shutil.copytree(filled, tmp_path / "cache"))
+
+
+def code_in(cache: Path) -> list[Path]:
+    """The files of a cache."""
+    return sorted(path for path in cache.rglob("*") if path.is_file())
 
 
 def copied(where: Path) -> Path:
@@ -83,38 +100,55 @@ def copied(where: Path) -> Path:
     return where
 
 
-def test_an_edited_helper_in_another_file_changes_the_numbers(tmp_path: Path) -> None:
-    """numba stamps the kernel's own file only; ours stamps all, and what is compiled anew replaces the old."""
+def test_a_second_process_compiles_nothing(cache: Path, expected: np.ndarray) -> None:
+    """Nor does it write anything."""
+    files = code_in(cache)
+    assert len(files) > 5
+    out, err = ended(started(SMALL.format(quiet=False), cache))
+    np.testing.assert_array_equal(heights(out), expected)
+    assert err == []
+    assert code_in(cache) == files
+
+
+def test_an_edit_of_a_kernel_source_changes_the_stamp_and_no_other_does(tmp_path: Path) -> None:
+    """Of a file with formulas, of one of numbers that they freeze; not of the command line."""
     source = copied(tmp_path / "src")
-    caller = source / "kinsim" / "balance" / "borrower.py"
-    caller.write_text(
-        "from ..kernel import kernel\n"
-        "from ..macroscopic.half_moments import small_side\n\n\n"
-        "@kernel\ndef borrowed(h: float) -> float:\n    return small_side(h, 0.0, 0.4)[0]\n"
-    )
-    code = """
-import kinsim.balance.borrower as b
-print(b.__file__, b.borrowed(0.5), sum(b.borrowed.stats.cache_hits.values()))
-"""
-    first = python(code, tmp_path / "cache", source).split()
-    again = python(code, tmp_path / "cache", source).split()
-    assert first[0] == str(caller)
-    assert (first[1], first[2], again[1], again[2]) == (first[1], "0", first[1], "1")
-    helper = source / "kinsim" / "macroscopic" / "half_moments.py"
-    text = helper.read_text()
-    edited = text.replace("return max(m1, 0.0), max(m2, 0.0)", "return 2.0 * max(m1, 0.0), max(m2, 0.0)")
-    assert edited != text
-    helper.write_text(edited)
-    assert float(python(code, tmp_path / "cache", source).split()[1]) == 2 * float(first[1])
-    helper.write_text(text)
-    assert python(code, tmp_path / "cache", source).split()[1] == first[1]
+    first = python(STAMP, None, source)
+    assert first == python(STAMP, None)
+    for name in (
+        "schemes/formulas.py",
+        "schemes/tile.py",
+        "macroscopic/closed_form.py",
+        "kernel.py",
+        "solver/march.py",
+    ):
+        file = source / "kinsim" / name
+        text = file.read_text(encoding="utf-8")
+        file.write_text(text + "\n", encoding="utf-8")
+        assert python(STAMP, None, source) != first, name
+        file.write_text(text, encoding="utf-8")
+    for name in ("cli.py", "report.py"):
+        file = source / "kinsim" / name
+        file.write_text(file.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+    assert python(STAMP, None, source) == first
+
+
+def test_a_copy_of_the_package_takes_its_code_and_nothing_is_written_beside_sources(
+    cache: Path, tmp_path: Path
+) -> None:
+    source = copied(tmp_path / "src")
+    before = sorted(source.rglob("*"))
+    out, err = ended(started(SMALL.format(quiet=False), cache, source, PYTHONDONTWRITEBYTECODE="1"))
+    assert heights(out).size == 20
+    assert err == []
+    assert sorted(source.rglob("*")) == before
 
 
 def test_all_numbers_that_kernels_freeze_are_stamped() -> None:
-    """What a file with kernels imports in capitals stands in a file whose edits make the compiler start anew."""
+    """What a file with formulas imports in capitals stands in a file whose edits make the compiler start anew."""
     known, frozen = set(stamped()), 0
     for path in known:
-        if b"@kernel" not in path.read_bytes():
+        if not any(mark in path.read_bytes() for mark in (b"@kernel", b"@formula", b"@routine", b"@generic")):
             continue
         for taken in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(taken, ast.ImportFrom) and any(name.name.isupper() for name in taken.names):
@@ -126,41 +160,94 @@ def test_all_numbers_that_kernels_freeze_are_stamped() -> None:
     assert frozen >= 3
 
 
-def test_two_copies_of_the_package_do_not_share_code(tmp_path: Path) -> None:
-    """Same cache folder, one of them edited: each keeps its own numbers."""
-    one, other = copied(tmp_path / "one"), copied(tmp_path / "other")
-    helper = other / "kinsim" / "balance" / "sides.py"
-    helper.write_text(helper.read_text().replace("0.5 * total2)", "0.25 * total2)").replace(
-        "total2 = h * u * u", "total2 = 2.0 * h * u * u"))  # fmt: skip
-    code = SMALL.format(before="")
-    printed = [python(code, tmp_path / "cache", path).split() for path in (one, other, one, other)]
-    numbers = [number for number, _, _ in printed]
-    assert numbers[0] == numbers[2] != numbers[1] == numbers[3]
-    assert [misses for _, misses, _ in printed] == ["1", "1", "0", "0"]
+@pytest.mark.parametrize("damage", ["empty", "truncated", "changed"])
+def test_a_damaged_file_costs_a_compilation(cache: Path, expected: np.ndarray, damage: str) -> None:
+    """And is mended by it."""
+    file = next(path for path in code_in(cache) if path.name.startswith("looked"))
+    whole = file.read_bytes()
+    changed = whole[:-9] + bytes([whole[-9] ^ 255]) + whole[-8:]
+    file.write_bytes({"empty": b"", "truncated": whole[: len(whole) // 2], "changed": changed}[damage])
+    for said in ([TOLD], []):
+        out, err = ended(started(SMALL.format(quiet=False), cache))
+        np.testing.assert_array_equal(heights(out), expected)
+        assert err == said
 
 
-def test_a_package_folder_that_cannot_be_written_is_no_obstacle(tmp_path: Path) -> None:
-    """Nothing is written beside the sources."""
-    source = copied(tmp_path / "src")
-    folders = [source / "kinsim", *(p for p in (source / "kinsim").rglob("*") if p.is_dir())]
-    before = sorted((source / "kinsim").rglob("*"))
-    for folder in folders:
-        folder.chmod(stat.S_IRUSR | stat.S_IXUSR)
-    try:
-        for _ in range(2):
-            printed = python(SMALL.format(before="sys.dont_write_bytecode = True"), tmp_path / "cache", source).split()
-    finally:
-        for folder in folders:
-            folder.chmod(stat.S_IRWXU)
-    assert printed[1:] == ["0", "1"]
-    assert sorted((source / "kinsim").rglob("*")) == before
-
-
-def test_a_cache_folder_that_cannot_be_made_is_no_obstacle(tmp_path: Path) -> None:
-    """A file stands in its place: code is kept elsewhere, for this process."""
+def test_a_cache_folder_that_cannot_be_made_is_no_obstacle(tmp_path: Path, expected: np.ndarray) -> None:
+    """A file stands in its place: code is kept in memory."""
     blocked = tmp_path / "blocked"
     blocked.write_text("")
-    assert python(SMALL.format(before=""), blocked).split()[1] == "1"
+    out, err = ended(started(SMALL.format(quiet=True), blocked))
+    np.testing.assert_array_equal(heights(out), expected)
+    assert err == []
+    assert blocked.read_text() == ""
+
+
+NOBODY = """
+import os, pwd
+def unknown(*given): raise KeyError("who are you?")
+pwd.getpwuid = pwd.getpwnam = unknown
+"""
+
+
+def test_a_user_without_a_home_and_a_name_is_no_obstacle(expected: np.ndarray) -> None:
+    """An empty environment, and a number of a user that no list knows, as in a container."""
+    code = NOBODY + SMALL.format(quiet=False)
+    done = subprocess.run([sys.executable, "-P", "-c", code], env={}, capture_output=True, text=True, timeout=600)
+    assert done.returncode == 0, done.stderr
+    np.testing.assert_array_equal(heights(done.stdout), expected)
+    assert done.stderr.splitlines() == [TOLD]
+
+
+def test_without_compiling_the_numbers_are_the_same(tmp_path: Path, expected: np.ndarray) -> None:
+    """NUMBA_DISABLE_JIT: what a debugger steps through; products and sums are then rounded apart."""
+    out, err = ended(started(SMALL.format(quiet=False), tmp_path / "cache", NUMBA_DISABLE_JIT="1"))
+    np.testing.assert_allclose(heights(out), expected, rtol=1e-13)
+    assert err == []
+    assert code_in(tmp_path) == []
+
+
+LAW = """
+from typing import NamedTuple
+
+class Mine(NamedTuple):
+    mu: float
+
+    def resistance(law, h, v, n):
+        return {formula}
+"""
+
+OWN = SMALL.replace("scene = ", "{law}\nscene = ").replace("Coulomb(0.2)", "Mine(0.2)")
+
+
+def with_friction(friction: object) -> np.ndarray:
+    """Heights of the small run with another law."""
+    return simulate(replace(SCENE, friction=friction), Macroscopic(4), Fixed(1e-3, 20)).h[-1]
+
+
+def test_an_edited_law_of_ones_own_gives_the_new_numbers(cache: Path, tmp_path: Path) -> None:
+    """And back; a law that is as it was is found again."""
+    file = tmp_path / "mine.py"
+    code = OWN.format(law="from mine import Mine", quiet=False)
+    rough, smooth = with_friction(Coulomb(np.arctan(0.2))), with_friction(Frictionless())
+    assert np.abs(rough - smooth).max() > 1e-6
+    for formula, heights_then, said in (
+        ("law.mu * n", rough, [TOLD]), ("0.0 * law.mu * n", smooth, [TOLD]), ("law.mu * n", rough, []),
+    ):  # fmt: skip
+        file.write_text(LAW.format(formula=formula))
+        out, err = ended(started(code, cache, tmp_path))
+        np.testing.assert_allclose(heights(out), heights_then, rtol=1e-12)
+        assert err == said
+
+
+def test_a_law_of_a_script_leaves_nothing_behind(cache: Path) -> None:
+    """Nobody could find it again; and it is compiled in each run, right."""
+    code = OWN.format(law=LAW.format(formula="law.mu * n"), quiet=True)
+    first = python(code, cache)
+    files = code_in(cache)
+    assert python(code, cache) == first
+    assert code_in(cache) == files
+    np.testing.assert_allclose(heights(first), with_friction(Coulomb(np.arctan(0.2))), rtol=1e-12)
 
 
 def test_import_loads_nothing_heavy() -> None:

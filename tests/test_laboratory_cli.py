@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from kinsim import Dump, Fixed, InputError, Kinetic, Macroscopic, Uniform, compa
 from kinsim.cli import app
 from kinsim.kinetic.equilibrium import EQUILIBRIA
 from kinsim.kinetic.force import FORCES
-from kinsim.kinetic.project import PROJECTIONS
+from kinsim.method import ProjectionName
 from kinsim.measure.seams import STAGES
 from kinsim.plot import plot_density, plot_seams
 
@@ -28,7 +29,17 @@ def call(*words: str) -> tuple[int, str, str]:
 def test_rooms_lists_every_variant() -> None:
     code, said, _ = call("rooms")
     assert code == 0
-    for name in (*EQUILIBRIA, *FORCES, *PROJECTIONS, "uniform", "window", "fitted", "coulomb", "periodic", "profile"):
+    for name in (
+        *EQUILIBRIA,
+        *FORCES,
+        *get_args(ProjectionName),
+        "uniform",
+        "window",
+        "fitted",
+        "coulomb",
+        "periodic",
+        "profile",
+    ):
         assert name in said
     for equation in ("(12)", "(18)", "(19)", "(20)", "(23)", "(24)", "(25)"):
         assert equation in said

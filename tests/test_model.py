@@ -189,7 +189,6 @@ BAD = [
     (lambda: Macroscopic(5), "scheme"),
     (lambda: Macroscopic(3, order=2), "belongs to scheme 4"),
     (lambda: Kinetic(4, limiter="mc"), "belongs to order 2"),
-    (lambda: Kinetic(4, Window(0.1), order=2), "one grid"),
     (lambda: Macroscopic(4, order=2, statics="reflect"), "belongs to order 1"),
     (lambda: Macroscopic(3, "both"), "coupling"),
     (lambda: Kinetic(equilibrium="exact"), "equilibrium"),

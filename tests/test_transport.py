@@ -9,7 +9,7 @@ import pytest
 from states import BETA, ghosted, random_states, scene_with
 
 from kinsim import Kinetic, Profile, Scene, Uniform, step
-from kinsim.step import Step
+from kinsim.solver.step import Step
 
 EPS = float(np.finfo(float).eps)
 EQUILIBRIA = ["cell-average", "sampled"]

@@ -29,9 +29,9 @@ from kinsim import (
     simulate,
     step,
 )
-from kinsim.balance.interface import Array
+from kinsim.arrays import Array
 from kinsim.exact import random_pile
-from kinsim.macroscopic import wing
+from kinsim.macroscopic import closed_form
 
 
 def main(chapter: Chapter) -> None:
@@ -94,9 +94,10 @@ def slow(chapter: Chapter, scene: Scene) -> None:
 
 def closed_flux(h_left: Array, u_left: Array, h_right: Array, u_right: Array, beta: float) -> tuple[Array, Array]:
     """The flux that the macroscopic wing takes."""
-    F1, F2 = np.empty_like(h_left), np.empty_like(h_left)
-    wing.flux_closed(h_left, u_left, h_right, u_right, beta, np.empty((4, F1.size)), F1, F2)
-    return F1, F2
+    left, right, betas = np.empty((4, h_left.size)), np.empty((4, h_left.size)), np.full(h_left.size, beta)
+    closed_form.half_moments_of_cells(closed_form.ClosedForm(), h_left, u_left, betas, left)
+    closed_form.half_moments_of_cells(closed_form.ClosedForm(), h_right, u_right, betas, right)
+    return left[0] + right[2], left[1] + right[3]
 
 
 if __name__ == "__main__":

@@ -37,7 +37,7 @@ from laboratory.orders import Panel, order, picture
 
 from kinsim import Kinetic, Macroscopic, Uniform, load_scene
 from kinsim.exact import SlidingWedge
-from kinsim.kinetic.equilibrium import EquilibriumName
+from kinsim.method import EquilibriumName
 from kinsim.studies.record import Record
 
 RANGE = (1.5, 4.0)

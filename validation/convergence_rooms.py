@@ -20,6 +20,7 @@ import math
 
 import numpy as np
 from claims import Chapter, run
+from laboratory.densities import force, transport
 from laboratory.judged import CLOCKS
 from laboratory.orders import Panel, falls, halvings, order, picture
 from numpy.typing import NDArray
@@ -27,8 +28,7 @@ from numpy.typing import NDArray
 from kinsim import Cells
 from kinsim.exact import FreeTransport
 from kinsim.exact.transport import Density
-from kinsim.kinetic.force import FORCES, ForceName
-from kinsim.kinetic.transport import transport
+from kinsim.method import ForceName
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
@@ -70,11 +70,10 @@ def fly(count: int, half: int, dt: float, g: float = 0.0, start: Density = cloud
     steps = math.ceil(END / dt * (1 - 1e-12))
     dt = END / steps
     free = FreeTransport(start, g, points=4)
-    f, moved = free.averages(cells, edges, 0.0), np.empty((count, 2 * half))
-    faces, never, offset = np.empty((count + 1, 2 * half)), np.zeros(count, dtype=bool), np.zeros(count)
+    f = free.averages(cells, edges, 0.0)
     for _ in range(steps):
-        transport(np.pad(f, ((1, 1), (0, 0)), mode="edge"), faces, never, never, middle, dt / cells.dx, moved)
-        FORCES["shift-linear"](moved, moved, np.full(count, g * dt), np.ones(count), dxi, f, offset)
+        moved = transport(f, middle, dt / cells.dx)
+        f, _ = force("shift-linear", moved, np.full(count, g * dt), np.ones(count), dxi)
     inner = np.abs(cells.x) < 2.0
     return float(np.abs(f - free.averages(cells, edges, END))[inner].sum() * cells.dx * dxi)
 
@@ -140,11 +139,10 @@ def push(name: ForceName, half: int) -> float:
     steps = round(END * G / (0.4 * dxi))
     dt = END / steps
     free, cell = FreeTransport(lambda x, xi: cloud(0.3 + 0 * x, xi), G), Cells(0, 1, 2)
-    f, off, travelled = free.averages(cell, edges, 0.0), np.zeros(2), 0.0
+    f, travelled = free.averages(cell, edges, 0.0), 0.0
     for _ in range(steps):
-        moved = np.empty_like(f)
-        FORCES[name](f, f, np.full(2, G * dt), np.ones(2), dxi, moved, off)
-        f, travelled = moved, travelled + float(off[0])
+        f, offset = force(name, f, np.full(2, G * dt), np.ones(2), dxi)
+        travelled += float(offset[0])
     return float(np.abs(f - free.averages(cell, edges + travelled, END)).mean(axis=0).sum() * dxi)
 
 

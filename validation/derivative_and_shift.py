@@ -20,6 +20,7 @@ from dataclasses import replace
 
 import numpy as np
 from claims import Chapter, run
+from laboratory.densities import force, is_derivative
 from laboratory.measures import distance, order
 from laboratory.pictures import COLOURS, MARKS
 from matplotlib.axes import Axes
@@ -40,10 +41,10 @@ from kinsim import (
     simulate,
     step,
 )
-from kinsim.kinetic.equilibrium import EQUILIBRIA, Status
+from kinsim.diagnostics.causes import quantities
+from kinsim.kinetic.equilibrium import fill
 from kinsim.kinetic.force import FORCES
 from kinsim.kinetic.velocity import Grid
-from kinsim.watch.causes import quantities
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)
@@ -141,7 +142,7 @@ def positivity(chapter: Chapter) -> dict[str, tuple[Array, Array]]:
     for name in FORCES:
         least = [step(scene, replace(method, force=name), h, q, s / per_dt).f_force.min() / M[rim] for s in sums]
         found[name] = (sums, np.array(least))
-        if not FORCES[name].derivative:
+        if not is_derivative(name):
             chapter.claim(f"{name}: least f, transport up to Courant {_courant(sums, per_dt, xi, M, scene):.2f}",
                           min(least), low=0.0, high=np.inf)  # fmt: skip
     upwind, centred = found["derivative-upwind"][1], found["derivative-centred"][1]
@@ -193,10 +194,9 @@ def _growth(name: str, nu: float, n: int) -> float:
     rng = np.random.default_rng(5)
     f = np.zeros((1, wide))
     f[0, wide // 2 - n : wide // 2 + n] = rng.normal(size=2 * n)
-    one, out, sizes = np.ones(1), np.empty_like(f), []
+    one, sizes = np.ones(1), []
     for _ in range(steps):
-        FORCES[name](f, f, np.array([nu]), one, 1.0, out, np.zeros(1))
-        f, out = out, f
+        f, _ = force(name, f, np.array([nu]), one, 1.0)
         sizes.append(float(np.sqrt((f * f).sum())))
     return float((sizes[-1] / sizes[steps // 2 - 1]) ** (2.0 / steps))
 
@@ -208,7 +208,7 @@ def draw_limits(limits: dict[str, tuple[Array, Array]], growth: dict[str, tuple[
     left, right = figure.subplots(1, 2)
     left.axhline(0, color="0.7", linewidth=1)
     left.axvline(1, color="0.7", linewidth=1)
-    shift = next(name for name in limits if not FORCES[name].derivative)
+    shift = next(name for name in limits if not is_derivative(name))
     for name, label, at, side in (
         (shift, "all shifts: never negative", 14, (0, 7)),
         ("derivative-centred", "derivative-centred", 6, (-9, -9)),
@@ -284,12 +284,11 @@ def moments(chapter: Chapter) -> dict[str, Array]:
 def pushed(name: str, n: int) -> Array:
     """What the force `name` adds beyond a rigid shift by theta cells, (thetas, 4): over h (1, dxi, dxi^2, dxi^2)."""
     h, u, grid = 1.0, 0.2, Grid(n, 4.0 / n)
-    M = np.empty((1, n))
-    EQUILIBRIA["cell-average"].fill(*(np.array([v]) for v in (h, u, h, u)), BETA, grid, M, Status.empty(1))
+    M = fill("cell-average", *(np.array([v]) for v in (h, u, h, u)), BETA, grid)
     rows = []
     for theta in THETAS:
-        J, offset, out = np.array([theta * grid.dxi * h]), np.zeros(1), np.empty_like(M)
-        FORCES[name](M, M, J, np.array([h]), grid.dxi, out, offset)
+        J = np.array([theta * grid.dxi * h])
+        out, offset = force(name, M, J, np.array([h]), grid.dxi)
         rigid = quantities(M, grid.xi, J / h, BETA, 0)
         rows.append(grid.dxi * (np.array(quantities(out, grid.xi, offset, BETA, 0)) - rigid))
     return np.array(rows) / (h * np.array([1.0, grid.dxi, grid.dxi**2, grid.dxi**2]))

@@ -23,8 +23,8 @@ from scipy.integrate import quad
 from scipy.linalg import expm
 
 from kinsim import crosscheck, printed
-from kinsim.balance.impulse import acceleration
 from kinsim.exact import Riemann
+from kinsim.schemes.formulas import acceleration
 
 Array = NDArray[np.float64]
 BETA = 0.4

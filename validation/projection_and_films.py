@@ -24,11 +24,11 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from kinsim import Cells, Frictionless, Kinetic, Profile, Scene, Uniform, load_scene, simulate, step
+from kinsim.diagnostics.causes import STAGES
 from kinsim.kinetic.equilibrium import EQUILIBRIA
 from kinsim.kinetic.force import FORCES
-from kinsim.kinetic.project import PROJECTIONS
 from kinsim.kinetic.velocity import Window
-from kinsim.watch.causes import STAGES
+from kinsim.rooms import PROJECTIONS
 
 Array = NDArray[np.float64]
 EPS = float(np.finfo(float).eps)

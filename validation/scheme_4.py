@@ -69,8 +69,8 @@ def drift_dry(method: Macroscopic, full: bool) -> float:
 
 def _drift(method: Macroscopic, h: Array, u: Array, ends: str) -> float:
     scene = scene_of(h, u, zeta=0.2, delta=DELTA, ends=ends)
-    for stepper, _ in steps(scene, method, h, h * u, 200, courant(method)):
-        last = stepper.now.h1
+    for h1, _, _ in steps(scene, method, h, h * u, 200, courant(method)):
+        last = h1
     return abs(math.fsum(last) / math.fsum(h) - 1.0) if np.isfinite(last).all() else math.inf
 
 
@@ -80,9 +80,9 @@ def lowest(method: Macroscopic, full: bool) -> float:
     for seed in SEEDS:
         h, u = wild(seed)
         scene = scene_of(h, u, zeta=0.2, delta=DELTA)
-        for stepper, _ in steps(scene, method, h, h * u, 200, courant(method)):
-            least = float(stepper.now.h1.min())
-            worst = max(worst, -least) if np.isfinite(stepper.now.q1).all() and np.isfinite(least) else math.inf
+        for h1, q1, _ in steps(scene, method, h, h * u, 200, courant(method)):
+            least = float(h1.min())
+            worst = max(worst, -least) if np.isfinite(q1).all() and np.isfinite(least) else math.inf
     return worst
 
 
@@ -98,9 +98,8 @@ def at_rest(zeta: float, noise: float, lowest: float) -> Measure:
             scene = pile(zeta, seed, lowest)
             start, _ = scene.initial()
             h, q = shaken(scene, noise, seed) if noise else scene.initial()
-            for stepper, _ in steps(scene, method, h, q, count, 0.45):
-                now = stepper.now
-                off = np.abs(now.h1 - start).max() + (np.abs(now.q1).max() if not noise else 0.0)
+            for h1, q1, _ in steps(scene, method, h, q, count, 0.45):
+                off = np.abs(h1 - start).max() + (np.abs(q1).max() if not noise else 0.0)
                 if not np.isfinite(off):
                     return math.inf
                 worst = max(worst, float(off))

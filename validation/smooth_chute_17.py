@@ -29,8 +29,8 @@ from laboratory.orders import halvings, order
 from laboratory.pictures import COLOURS, MARKS
 from matplotlib.figure import Figure
 
-from kinsim.kinetic.equilibrium import EquilibriumName
 from kinsim.kinetic.velocity import Grid
+from kinsim.method import EquilibriumName
 from kinsim.smooth.forces import residual_of_17, residual_of_family
 
 END, REACH = 4.0, 3.6

@@ -76,7 +76,7 @@ def main(chapter: Chapter) -> None:
 
 def limit(method: Kinetic | Macroscopic) -> float:
     """A Courant number just below the largest one."""
-    return 0.48 if method.order == 2 else 0.999
+    return 0.999
 
 
 def conserved(chapter: Chapter) -> None:
@@ -219,7 +219,7 @@ def streaming(chapter: Chapter) -> None:
             cells = Cells(0.0, 4.0, count)
             h, u = exact(cells.x)
             scene = Scene(cells, Profile(h, u), chute, friction, (Inflow(0.3, 2.0), "open"), 0.4)
-            one = simulate(scene, ROOMS[name], Courant(0.45 if name == "order 2" else 0.9, 20.0))
+            one = simulate(scene, ROOMS[name], Courant(0.9, 20.0))
             errors.append(float(np.abs(one.u[-1] - u)[count // 8 : -count // 8].mean()))
             spread = max(spread, float(np.ptp(step(scene, ROOMS[name], one.h[-1], one.q[-1], one.dt[0]).flux[0])))
         order = math.log2(errors[-2] / errors[-1])
@@ -259,8 +259,7 @@ def stopped(chapter: Chapter) -> None:
             for count in sizes:
                 scene, _, _ = load_scene("bend")
                 scene = replace(scene, cells=replace(scene.cells, count=count), chute=replace(scene.chute, eta=eta))
-                number = 0.45 if name == "order 2" else 0.9
-                one = simulate(scene, ROOMS[name], Courant(number, 250.0, stop_at_rest=True), 20 * count // 160 + 1)
+                one = simulate(scene, ROOMS[name], Courant(0.9, 250.0, stop_at_rest=True), 20 * count // 160 + 1)
                 h, x = one.h[-1], one.x
                 deep = x[h > 1e-2]
                 centres[eta, name, count] = float((x * h).sum() / h.sum())

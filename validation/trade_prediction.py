@@ -30,7 +30,6 @@ from laboratory.random_scenes import random_scene
 from laboratory.turns import in_turns
 
 from kinsim import Courant, Fitted, Fixed, InputError, Kinetic, Run, Scene, Uniform, choose, load_scene, simulate
-from kinsim.stepper import largest_courant
 from kinsim.trades.choose import velocity_error
 from kinsim.trades.cost import seconds_per_step
 from kinsim.trades.pace import steady
@@ -176,7 +175,7 @@ def elsewhere(chapter: Chapter, before: np.ndarray) -> None:
         scene, end = random_scene(rng, count)
         methods = [Kinetic(velocity=velocity, order=order)
                    for velocity in (Fitted(1), Fitted(3), Uniform(8), Uniform(32), Uniform(96))]  # fmt: skip
-        number, end = float(steps.split()[-1]) * largest_courant(methods[0]), min(end, 1.0)
+        number, end = float(steps.split()[-1]), min(end, 1.0)
         clock = Courant(number, end) if steps.startswith("Courant") else steady(scene, methods[0], number, end)
         pilots = Pilots(scene, methods, clock)
         told = np.array([pilots.predicted(method) for method in methods])

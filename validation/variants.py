@@ -26,6 +26,7 @@ from typing import Any
 
 import numpy as np
 from claims import Chapter, run
+from laboratory.densities import is_derivative
 from laboratory.measures import (
     Case,
     cost,
@@ -257,7 +258,7 @@ def judge_others(chapter: Chapter, rows: list[Row], size: Size) -> None:
     """Conservation, forces, windows, fitted nodes."""
     drift = max(row.drift for row in rows)
     chapter.claim("mass: no variant changes it beyond the ledger, but for steps * eps", drift, high=size.steps * EPS)
-    shifts = [name for name, room in FORCES.items() if not room.derivative and name != "shift-linear"]
+    shifts = [name for name in FORCES if not is_derivative(name) and name != "shift-linear"]
     apart = 0.0
     for row in rows:
         if row.variant.name in shifts:

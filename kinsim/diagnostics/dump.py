@@ -112,7 +112,13 @@ class Recorder(Observer):
         """The rows so far."""
         rows = {f"row {at}": row for at, row in enumerate(self._rows)}
         offsets = np.array(self._offsets).reshape(-1, self._x.size)
-        return {"times": np.array(self._times), "offsets": offsets, "last": np.array(self._last), "dxi": np.array(self._dxi), **rows}
+        return {
+            "times": np.array(self._times),
+            "offsets": offsets,
+            "last": np.array(self._last),
+            "dxi": np.array(self._dxi),
+            **rows,
+        }
 
     def restore(self, kept: Kept) -> None:
         """Go on from there."""

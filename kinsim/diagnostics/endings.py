@@ -78,7 +78,11 @@ def ending(block: Block, clock: AnyClock) -> tuple[VerdictKind, str, int | None]
         asked = f"velocities up to {solver.quickest:.3g} ask for steps of dt = {solver.attempted:.3g}"
         return "too-many-steps", f"{asked}, too short to come to t = {end:g}; stopped", None
     if isinstance(clock, Courant) and block.step >= clock.most:
-        return "too-many-steps", f"velocities up to {solver.quickest:.3g} ask for more than {clock.most} steps; stopped", None
+        return (
+            "too-many-steps",
+            f"velocities up to {solver.quickest:.3g} ask for more than {clock.most} steps; stopped",
+            None,
+        )
     if reason == COURANT:
         dt, speed = solver.attempted, solver.counted
         if not speed * dt / dx < math.inf:
@@ -138,7 +142,9 @@ def fault(solver: Solver) -> tuple[str, int | None]:
         return f"a velocity is beyond {FASTEST_OF_ALL:g}", int(np.argmax(speed))
     most = np.maximum(np.abs(h), np.abs(q))
     if not h.size * float(most.max()) < solver.room:
-        return "the mass or momentum of all cells is not finite, or not beside the mass of the start", int(np.argmax(most))
+        return "the mass or momentum of all cells is not finite, or not beside the mass of the start", int(
+            np.argmax(most)
+        )
     parts = {name: abs(part) for name, part in stages.books._asdict().items()}
     worst = max(parts, key=lambda name: (not math.isfinite(parts[name]), parts[name]))
     return f"the book {worst!r} is not finite, or not beside the mass of the start", None

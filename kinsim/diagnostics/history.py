@@ -54,7 +54,7 @@ class Cadence:
             self.times = clock.end * np.arange(1, rows + 1) / rows
         elif save_every is None and isinstance(clock, Courant):
             self.past = clock.end / ROWS
-        elif save_every is None:
+        elif save_every is None and not isinstance(clock, Courant):
             self.every = max(math.ceil(clock.ticks / ROWS), 1)
 
     def count(self, steps: int) -> int:

@@ -75,8 +75,9 @@ class Ledger:
 
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic, force: bool) -> None:
         self._scene = scene
-        self._density = isinstance(method, Kinetic) and not isinstance(method.velocity, Fitted)
-        self.every_step = self._density and (force or not keeps_positive(method))
+        on_grid = isinstance(method, Kinetic) and not isinstance(method.velocity, Fitted)
+        self._density = on_grid
+        self.every_step = on_grid and (force or not keeps_positive(method))
         self._lifts = lifts(scene)
         self._rows: list[dict[str, float]] = []
         self.least_height, self.least_density, self.worst_courant = math.inf, 0.0, 0.0
@@ -152,9 +153,9 @@ class Ledger:
             solver.model.flux.report[4:] = 0.0
 
 
-def keeps_positive(method: Kinetic) -> bool:
+def keeps_positive(method: Kinetic | Macroscopic) -> bool:
     """Whether f >= 0 is proved under (28): one flux at a face of what stands there, and a force that moves f."""
-    return method.scheme in (1, 4) and method.force.startswith("shift")
+    return method.scheme in (1, 4) and (isinstance(method, Macroscopic) or method.force.startswith("shift"))
 
 
 def fallen(report: Array) -> dict[str, float]:

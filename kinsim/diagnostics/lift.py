@@ -21,6 +21,7 @@ LIFT_COLUMNS = {
 }
 """Further columns of a run on a smooth chute with eta > 0."""
 
+
 def lifts(scene: Scene) -> bool:
     """Whether the mass could leave the ground of a scene."""
     return isinstance(scene.ground, Smooth) and scene.ground.bends
@@ -51,7 +52,7 @@ def lift_words(scene: Scene, seen: Array) -> str:
 
 def note_lift(scene: Scene, h: Array, q: Array, seen: Array) -> bool:
     """Count the cells of the initial state that leave the ground; whether any does."""
-    if not lifts(scene):
+    if not (isinstance(scene.ground, Smooth) and scene.ground.bends):
         return False
     thick, normal = normal_force(scene.ground, h, q)
     seen[LIFT_LEAST] = min(seen[LIFT_LEAST], float(normal[thick].min(initial=math.inf)))

@@ -6,10 +6,11 @@ from functools import cached_property
 
 from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..model.cells import Cells
 from ..value import Number, value
 from . import sliding
-from .domain import Array, NonNegative, finite, moment, places
+from .domain import NonNegative, finite, moment, places
 from .quadrature import known
 from .riemann import Riemann
 

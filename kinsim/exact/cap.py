@@ -9,10 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..model.cells import Cells
 from ..value import Number, value
 from . import sliding
-from .domain import TOO_FAR, Array, NonNegative, Positive, finite, held, moment, places
+from .domain import TOO_FAR, NonNegative, Positive, finite, held, moment, places
 from .quadrature import averages
 from .root import root_between
 

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
+from ..arrays import Array
 from ..model.cells import Cells
 from ..value import Number, value
-from .domain import Array, NonNegative, Positive, finite, moment, places
+from .domain import NonNegative, Positive, finite, moment, places
 from .quadrature import averages
 
 Share = Annotated[Number, Field(ge=-1, le=1)]

@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from ..arrays import Array
 from ..errors import InputError
 from ..model.cells import Cells
-from .domain import Array
 
 GAUSS = 0.5 / math.sqrt(3.0)
 """The two Gauss points lie so far from the middle of a unit interval; they integrate cubics exactly."""

@@ -8,11 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
+from ..arrays import Array
 from ..errors import InputError
 from ..model.cells import Cells
 from ..model.heap import Profile
 from ..value import Number, Whole, checked
-from .domain import TOO_FAR, Array, NonNegative, Positive, held, numbers
+from .domain import TOO_FAR, NonNegative, Positive, held, numbers
 
 Per = Literal["face", "cell"]
 Fill = Annotated[Number, Field(ge=0, le=1e6)]

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
+from ..arrays import Array
 from ..errors import InputError
 from ..model.cells import Cells
 from ..value import Number, Whole, value
-from .domain import Array, moment, numbers, places
+from .domain import moment, numbers, places
 from .quadrature import cell_edges
 
 Density = Callable[[Array, Array], Array]

@@ -7,9 +7,10 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..arrays import Array
 from ..model.cells import Cells
 from ..value import Number, value
-from .domain import Array, NonNegative, Positive, finite, moment, places
+from .domain import NonNegative, Positive, finite, moment, places
 from .motion import Motion
 from .quadrature import averages
 

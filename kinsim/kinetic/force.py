@@ -1,7 +1,7 @@
 """The force steps, which hand the impulse J over to the density of a cell.
 
-(23) moves f rigidly, f(xi + J/h^{n+1}) <- f(xi); (18) takes a difference of M^n instead. A row stands in a padded array,
-entry j + 2 of which belongs to node j, with zeros around it.
+(23) moves f rigidly, f(xi + J/h^{n+1}) <- f(xi); (18) takes a difference of M^n instead. A row stands in a padded
+array, entry j + 2 of which belongs to node j, with zeros around it.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from ..method import ForceName
 class ShiftLinear(NamedTuple):
     """Shift (23) by a conservative linear remap; exact in mass and momentum, keeps f >= 0."""
 
-    def push(force, row, M, J, h, dxi, f, i):  # noqa: N805
+    def push(force, row, M, J, h, dxi, f, i):
         return 0.0, remap(row, J, h, dxi, f, i)
 
 
 class ShiftExact(NamedTuple):
     """Shift (23) by moving the nodes: values stay, node j of row i stands at xi_j + J_i/h_i^{n+1}."""
 
-    def push(force, row, M, J, h, dxi, f, i):  # noqa: N805
+    def push(force, row, M, J, h, dxi, f, i):
         for j in range(f.shape[1]):
             f[i, j] = row[j + 2]
         return J / h if h > 0.0 else 0.0, 0.0
 
-    def moves_nodes(force):  # noqa: N805
+    def moves_nodes(force):
         return True
 
 
@@ -42,14 +42,14 @@ class ShiftPFC(NamedTuple):
     rim of the support, the momentum of f errs, and the ledger books it.
     """
 
-    def push(force, row, M, J, h, dxi, f, i):  # noqa: N805
+    def push(force, row, M, J, h, dxi, f, i):
         return 0.0, shift_pfc(row, J, h, dxi, f, i)
 
 
 class DerivativeUpwind(NamedTuple):
     """Derivative (18) of M^n by the one-sided difference from where the force pushes."""
 
-    def push(force, row, M, J, h, dxi, f, i):  # noqa: N805
+    def push(force, row, M, J, h, dxi, f, i):
         nu = J / h / dxi if h > 0.0 else 0.0
         for j in range(f.shape[1]):
             behind = M[j + 1] if nu >= 0.0 else M[j + 3]
@@ -57,20 +57,20 @@ class DerivativeUpwind(NamedTuple):
         n = f.shape[1]
         return 0.0, abs(nu) * (M[n + 1] if nu >= 0.0 else M[2]) * dxi
 
-    def acts_before(force):  # noqa: N805
+    def acts_before(force):
         return True
 
 
 class DerivativeCentred(NamedTuple):
     """Derivative (18) of M^n by the centred difference; for study."""
 
-    def push(force, row, M, J, h, dxi, f, i):  # noqa: N805
+    def push(force, row, M, J, h, dxi, f, i):
         nu = J / h / dxi if h > 0.0 else 0.0
         for j in range(f.shape[1]):
             f[i, j] = row[j + 2] - 0.5 * nu * (M[j + 3] - M[j + 1])
         return 0.0, 0.5 * nu * (M[f.shape[1] + 1] - M[2]) * dxi
 
-    def acts_before(force):  # noqa: N805
+    def acts_before(force):
         return True
 
 
@@ -81,14 +81,14 @@ class After(NamedTuple):
 class Before(NamedTuple):
     """Any force on M^n, likewise."""
 
-    def acts_before(force):  # noqa: N805
+    def acts_before(force):
         return True
 
 
 class Unforced(NamedTuple):
     """Nothing pulls, and nothing holds back: f stays."""
 
-    def push(force, row, M, J, h, dxi, f, i):  # noqa: N805
+    def push(force, row, M, J, h, dxi, f, i):
         for j in range(f.shape[1]):
             f[i, j] = row[j + 2]
         return 0.0, 0.0

@@ -30,10 +30,10 @@ class GaussJacobi(NamedTuple):
     nodes: tuple[float, ...]
     weights: tuple[float, ...]
 
-    def leave(flux, h, u, beta):  # noqa: N805
+    def leave(flux, h, u, beta):
         return ahead(h, u, beta, *fitted(flux.nodes, flux.weights, h, abs(u), beta))
 
-    def leave_both(flux, h, u, beta):  # noqa: N805
+    def leave_both(flux, h, u, beta):
         m1, m2 = fitted(flux.nodes, flux.weights, h, abs(u), beta)
         p1, p2 = ahead(h, u, beta, m1, m2)
         n1, n2 = ahead(h, -u, beta, m1, m2)

@@ -31,19 +31,17 @@ class Nodes(NamedTuple):
     spare: Array
     report: Array
 
-    def leave_both(flux, h, u, beta):  # noqa: N805
+    def leave_both(flux, h, u, beta):
         both_sides(flux.equilibrium, h, u, beta, flux.dxi, flux.P, flux.N)
         p1, p2 = sum_side(flux.P, 0, flux.P.size, flux.w1, flux.w2)
         n1, n2 = sum_side(flux.N, 0, flux.N.size, flux.w1, flux.w2)
         return p1, p2, n1, n2
 
-    def cell_moments(flux, bed, place, low, high, room):  # noqa: N805
+    def cell_moments(flux, bed, place, low, high, room):
         for k in range(low, high):
             send_both(flux, k, beta_of(bed, place.begin + k), room)
 
-    def state_moments(  # noqa: N805
-        flux, scheme, order, bed, place, lam, low, high, hl, ul, hr, ur, p1, p2, n1, n2, room
-    ):
+    def state_moments(flux, scheme, order, bed, place, lam, low, high, hl, ul, hr, ur, p1, p2, n1, n2, room):
         for k in range(low, high):
             h, u, i = room[H + k], room[U + k], place.begin + k
             as_it_is = (room[hl + k] == h) & (room[ul + k] == u) & (room[hr + k - 1] == h) & (room[ur + k] == u)
@@ -58,7 +56,7 @@ class Nodes(NamedTuple):
             begin, end = leaving(flux, scheme, order, room[hr + k - 1], -room[ur + k], by, h, -u, beta, lam, flux.P)
             room[n1 + k - 1], room[n2 + k - 1] = sum_side(flux.P, begin, end, flux.w1, flux.w2)
 
-    def limits_outflow(flux):  # noqa: N805
+    def limits_outflow(flux):
         return True
 
 
@@ -68,7 +66,7 @@ class Spread(NamedTuple):
     equilibrium: Any
     dxi: float
 
-    def extent(flux, low, high):  # noqa: N805
+    def extent(flux, low, high):
         return -outermost(flux, -low), outermost(flux, high)
 
 

@@ -121,7 +121,7 @@ def push_rows(
     model: Model, place: Place, first: int, last: int, room: Array, work: Array, padded: Array, T: Array, at: int,
     f: Array, offset: Array, into: int,
 ) -> float:  # fmt: skip
-    """Hand J over to the rows T of the cells `first` to below `last`; returns the mass that leaves the window, per dx."""
+    """Hand J over to the rows T of the cells `first` to below `last`; returns the mass that leaves, per dx."""
     force, dxi, n, gone = model.force, model.flux.dxi, T.shape[1], 0.0
     for k in range(first, last):
         for j in range(n):

@@ -26,10 +26,10 @@ TINY = 2.2250738585072014e-308
 class ClosedForm(NamedTuple):
     """The flux of the macroscopic scheme."""
 
-    def leave(flux, h, u, beta):  # noqa: N805
+    def leave(flux, h, u, beta):
         return ahead(h, u, beta, *small_side(h, abs(u), beta))
 
-    def leave_both(flux, h, u, beta):  # noqa: N805
+    def leave_both(flux, h, u, beta):
         m1, m2 = small_side(h, abs(u), beta)
         p1, p2 = ahead(h, u, beta, m1, m2)
         n1, n2 = ahead(h, -u, beta, m1, m2)

@@ -37,13 +37,13 @@ OF_ROWS = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 7, ctypes.c_long)
 class Outside(NamedTuple):
     """A flux of two states; a class of its own for each function has it as `between`, or as `of_rows`."""
 
-    def flux_of_cells(flux, bed, place, low, high, f1, f2, room):  # noqa: N805
+    def flux_of_cells(flux, bed, place, low, high, f1, f2, room):
         faces_between(flux, bed, place, low, high, H, U, H + 1, U, f1, f2, room)
 
-    def flux_of_states(flux, scheme, order, bed, place, lam, low, high, hl, ul, hr, ur, f1, f2, room):  # noqa: N805
+    def flux_of_states(flux, scheme, order, bed, place, lam, low, high, hl, ul, hr, ur, f1, f2, room):
         faces_between(flux, bed, place, low, high, hl, ul, hr, ur, f1, f2, room)
 
-    def held_flux(flux, scheme, order, ground, lam, place, room):  # noqa: N805
+    def held_flux(flux, scheme, order, ground, lam, place, room):
         n = place.n
         _, up, _, um = rows(order)
         faces_between(flux, ground.bed, place, -2, n + 1, HL, up, HR, um, F1, F2, room)
@@ -130,7 +130,9 @@ def _by_rows(function: Flux) -> dict[str, Any]:
 
     def call(*given: Any) -> None:
         count = given[-1]
-        arrays = [np.ctypeslib.as_array(ctypes.cast(at, ctypes.POINTER(ctypes.c_double)), (count,)) for at in given[:-1]]
+        arrays = [
+            np.ctypeslib.as_array(ctypes.cast(at, ctypes.POINTER(ctypes.c_double)), (count,)) for at in given[:-1]
+        ]
         try:
             arrays[5][:], arrays[6][:] = function(*(part.copy() for part in arrays[:5]))
         except Exception:  # it cannot pass through compiled code; not-a-number ends the run

@@ -10,10 +10,11 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
+from ..arrays import Array
 from ..errors import InputError
 from ..value import Number, Whole, checked
 from .reference import by_quadrature, on_grid
-from .regimes import Array, States, regimes
+from .regimes import States, regimes
 
 Flux = Callable[..., tuple[Any, Any]]
 

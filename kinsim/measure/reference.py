@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arrays import Array
 from ..kinetic.equilibrium import fill, weights
 from ..kinetic.velocity import Grid
-from .regimes import Array, States
+from .regimes import States
 
 NODES = 512
 """Velocity cells of the grid that a flux is held against."""

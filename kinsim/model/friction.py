@@ -21,16 +21,16 @@ class DryFriction(NamedTuple):
 
     mu: float
 
-    def resistance(law, h, v, n):  # noqa: N805
+    def resistance(law, h, v, n):
         return law.mu * n
 
-    def holds(law, h, w, n):  # noqa: N805
+    def holds(law, h, w, n):
         return law.mu * n
 
-    def brought(law, h, w, dt, n):  # noqa: N805
+    def brought(law, h, w, dt, n):
         return law.mu * n
 
-    def brought_midway(law, h, u, h1, w, dt, acts, n):  # noqa: N805
+    def brought_midway(law, h, u, h1, w, dt, acts, n):
         return law.mu * n
 
 

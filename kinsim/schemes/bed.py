@@ -45,24 +45,24 @@ class Curve(NamedTuple):
     uneven_left: Array
     uneven_right: Array
 
-    def pull(bed, i):  # noqa: N805
+    def pull(bed, i):
         return bed.s[i]
 
-    def beta_of(bed, i):  # noqa: N805
+    def beta_of(bed, i):
         return bed.beta[i]
 
-    def normal(bed, i, u, grip_dt):  # noqa: N805
+    def normal(bed, i, u, grip_dt):
         a = grip_dt * max(bed.bend[i], 0.0) * abs(u)
         share = (1.0 - 0.81 / (a + 0.8)) / a if a > 0.1 else 1.0
         return max(bed.n[i] + bed.bend[i] * u * u * share, 0.0)
 
-    def face(bed, i):  # noqa: N805
+    def face(bed, i):
         return bed.s_face[i], bed.n_face[i], bed.beta_face[i], bed.tilt[i]
 
-    def uneven(bed, i):  # noqa: N805
+    def uneven(bed, i):
         return bed.uneven_left[i], bed.uneven_right[i]
 
-    def beta_jump(bed, i):  # noqa: N805
+    def beta_jump(bed, i):
         return bed.beta_face[i] - bed.beta_face[i - 1]
 
 

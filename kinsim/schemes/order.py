@@ -24,13 +24,13 @@ class Second(NamedTuple):
 
     steepest: float
 
-    def rows(order):  # noqa: N805
+    def rows(order):
         return HP, UP, HM, UM
 
-    def is_sloped(order):  # noqa: N805
+    def is_sloped(order):
         return True
 
-    def show(order, ground, dt, place, room):  # noqa: N805
+    def show(order, ground, dt, place, room):
         n, bed, law, lam, begin = place.n, ground.bed, ground.law, dt / ground.dx, place.begin
         for k in range(-1, n + 1):
             rise = limited(room[H + k] - room[H + k - 1], room[H + k + 1] - room[H + k], order.steepest)
@@ -64,18 +64,20 @@ class Second(NamedTuple):
         if place.last and ground.right.kind != RING:
             stream = ground.right.kind == STREAM
             room[HM + n] = room[H + n] if stream else room[HP + n - 1]
-            room[UM + n] = room[U + n] if stream else (-room[UP + n - 1] if ground.right.kind == WALL else room[UP + n - 1])
+            room[UM + n] = (
+                room[U + n] if stream else (-room[UP + n - 1] if ground.right.kind == WALL else room[UP + n - 1])
+            )
 
-    def pulled(order, h, h1):  # noqa: N805
+    def pulled(order, h, h1):
         return min(0.5 * (h + h1), 2.0 * h1)
 
-    def midway(order, k, room):  # noqa: N805
+    def midway(order, k, room):
         return 0.5 * (room[UM + k] + room[UP + k])
 
-    def beta_shown(order, bed, cell, face_at):  # noqa: N805
+    def beta_shown(order, bed, cell, face_at):
         return face(bed, face_at)[2]
 
-    def friction_of(order, law, h, u, h1, w, dt, acts, n):  # noqa: N805
+    def friction_of(order, law, h, u, h1, w, dt, acts, n):
         return brought_midway(law, h, u, h1, w, dt, acts, n)
 
 

@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
+from ..arrays import Array
 from ..kernel import question, routine, short_question
 from .bed import beta_of
 from .friction import brought
-from .tile import N1, N2, P1, P2, Array, Ground, H, Place, U
+from .tile import N1, N2, P1, P2, Ground, H, Place, U
 
 # ---- an order -----------------------------------------------------------------------------------------------------
 
@@ -57,7 +58,9 @@ def beta_shown(order: Any, bed: Any, cell: int, face_at: int) -> float:
 
 
 @short_question
-def friction_of(order: Any, law: Any, h: float, u: float, h1: float, w: float, dt: float, acts: float, n: float) -> float:
+def friction_of(
+    order: Any, law: Any, h: float, u: float, h1: float, w: float, dt: float, acts: float, n: float
+) -> float:
     """The deceleration that the law brings to bear on a cell that would move with w."""
     return brought(law, h1, abs(w), acts, n)
 
@@ -89,7 +92,9 @@ def has_two_fluxes(scheme: Any) -> bool:
 
 
 @question
-def settle(scheme: Any, order: Any, force: Any, flux: Any, ground: Ground, dt: float, place: Place, room: Array) -> float:
+def settle(
+    scheme: Any, order: Any, force: Any, flux: Any, ground: Ground, dt: float, place: Place, room: Array
+) -> float:
     """Settle h^{n+1} and qhat, and write J; returns the mass made of heights below 0, per dx."""
     raise NotImplementedError
 

@@ -24,7 +24,7 @@ ROUNDING = 1e-13
 class Reflecting(NamedTuple):
     """Scheme 4 with faces that reflect; first order."""
 
-    def judge(scheme, ground, dt, place, room):  # noqa: N805
+    def judge(scheme, ground, dt, place, room):
         n, dx = place.n, ground.dx
         for k in range(-2, n + 1):
             h_i, h_j, u_i, u_j = room[H + k], room[H + k + 1], room[U + k], room[U + k + 1]
@@ -46,7 +46,7 @@ class Reflecting(NamedTuple):
             still += 1 if (room[STATIC + k] == 1.0) & (room[U + k] == 0.0) & (room[U + k + 1] == 0.0) else 0
         return still == n + 1
 
-    def fluxes(scheme, order, flux, ground, dt, place, room):  # noqa: N805
+    def fluxes(scheme, order, flux, ground, dt, place, room):
         n = place.n
         cell_moments(flux, ground.bed, place, -1, n + 1, room)
         meet(-1, n, P1, P2, N1, N2, F1, F2, room)
@@ -58,10 +58,10 @@ class Reflecting(NamedTuple):
             room[G2 + k] = 2.0 * room[N2 + k] if static else room[G2 + k]
         return 0.0
 
-    def has_two_fluxes(scheme):  # noqa: N805
+    def has_two_fluxes(scheme):
         return True
 
-    def settle(scheme, order, force, flux, ground, dt, place, room):  # noqa: N805
+    def settle(scheme, order, force, flux, ground, dt, place, room):
         bed, law, grip_dt = ground.bed, ground.law, dt * grip(ground.law)
         made = settle_heights(order, flux, bed, place, room)
         for k in range(place.n):
@@ -79,5 +79,5 @@ class Reflecting(NamedTuple):
             room[J + k] = -room[QHAT + k] if abs(q) <= most else drive - math.copysign(most, q)
         return made
 
-    def comes_back(scheme, k, room):  # noqa: N805
+    def comes_back(scheme, k, room):
         return room[STATIC + k] == 1.0

@@ -14,11 +14,11 @@ from .tile import F1, F2, H1, QHAT, H, J, U
 class Upwind(NamedTuple):
     """Scheme 1."""
 
-    def fluxes(scheme, order, flux, ground, dt, place, room):  # noqa: N805
+    def fluxes(scheme, order, flux, ground, dt, place, room):
         flux_of_cells(flux, ground.bed, place, -1, place.n, F1, F2, room)
         return 0.0
 
-    def settle(scheme, order, force, flux, ground, dt, place, room):  # noqa: N805
+    def settle(scheme, order, force, flux, ground, dt, place, room):
         bed, law, grip_dt = ground.bed, ground.law, dt * grip(ground.law)
         for k in range(place.n):
             i, u = place.begin + k, room[U + k]

@@ -22,7 +22,7 @@ def balanced_at(scheme, slow_here: float, slow_there: float) -> bool:
 class Balanced(NamedTuple):
     """Scheme 2: balanced faces everywhere."""
 
-    def fluxes(scheme, order, flux, ground, dt, place, room):  # noqa: N805
+    def fluxes(scheme, order, flux, ground, dt, place, room):
         n, bed, lam = place.n, ground.bed, dt / ground.dx
         for k in range(-2, n + 1):
             room[HB + k] = 0.5 * (room[H + k] + room[H + k + 1])  # (25)
@@ -49,14 +49,17 @@ class Balanced(NamedTuple):
             top = max(top, max(abs(room[U + k]), abs(room[U + k + 1])) + c)
         return top
 
-    def has_two_fluxes(scheme):  # noqa: N805
+    def has_two_fluxes(scheme):
         return True
 
-    def settle(scheme, order, force, flux, ground, dt, place, room):  # noqa: N805
+    def settle(scheme, order, force, flux, ground, dt, place, room):
         bed, law, dx, grip_dt = ground.bed, ground.law, ground.dx, dt * grip(ground.law)
         for k in range(place.n):
             i, q, here = place.begin + k, room[Q + k], room[H + k]
-            s, R = pull(bed, i), resistance(law, max(here, LEAST), abs(room[U + k]), normal(bed, i, room[U + k], grip_dt))
+            s, R = (
+                pull(bed, i),
+                resistance(law, max(here, LEAST), abs(room[U + k]), normal(bed, i, room[U + k], grip_dt)),
+            )
             if room[SLOW + k] == 1.0:  # q^n + mu dt g h^{n+1} = 0 by the choice of mu
                 mu = -q / (dt * acceleration(q, s, R) * room[CANDIDATE + k]) if q != 0.0 else 0.0
                 g = static_acceleration(room[H + k - 1], room[H + k + 1], s, R, beta_of(bed, i), dx)
@@ -69,15 +72,15 @@ class Balanced(NamedTuple):
                 room[J + k] = dt * acceleration(q, s, R) * height
         return 0.0
 
-    def has_own_density(scheme, order, k, room):  # noqa: N805
+    def has_own_density(scheme, order, k, room):
         return balanced_at(scheme, room[SLOW + k], room[SLOW + k + 1]) | balanced_at(
             scheme, room[SLOW + k + 1], room[SLOW + k]
         )
 
-    def own_states(scheme, order, k, room):  # noqa: N805
+    def own_states(scheme, order, k, room):
         return room[HB + k], room[U + k], room[HB + k], room[U + k + 1]
 
-    def takes_own(scheme, order, k, wall, room):  # noqa: N805
+    def takes_own(scheme, order, k, wall, room):
         return balanced_at(scheme, room[SLOW + k], room[SLOW + k - 1 + 2 * wall])
 
 
@@ -91,7 +94,7 @@ class CoupledByCell(NamedTuple):
     own_states = Balanced.own_states
     takes_own = Balanced.takes_own
 
-    def balanced_at(scheme, slow_here, slow_there):  # noqa: N805
+    def balanced_at(scheme, slow_here, slow_there):
         return slow_here == 1.0
 
 
@@ -105,5 +108,5 @@ class CoupledByFace(NamedTuple):
     own_states = Balanced.own_states
     takes_own = Balanced.takes_own
 
-    def balanced_at(scheme, slow_here, slow_there):  # noqa: N805
+    def balanced_at(scheme, slow_here, slow_there):
         return (slow_here == 1.0) & (slow_there == 1.0)

@@ -70,7 +70,7 @@ from .tile import (
 class Held(NamedTuple):
     """Scheme 4 with faces that hold."""
 
-    def judge(scheme, ground, dt, place, room):  # noqa: N805
+    def judge(scheme, ground, dt, place, room):
         n, bed, law, dx, begin = place.n, ground.bed, ground.law, ground.dx, place.begin
         for k in range(-2, n + 1):
             h_i, h_j = room[H + k], room[H + k + 1]
@@ -97,7 +97,7 @@ class Held(NamedTuple):
             still += 1 if room[STILL + k] == 1.0 else 0
         return still == n + 1
 
-    def face_states(scheme, order, ground, place, room):  # noqa: N805
+    def face_states(scheme, order, ground, place, room):
         n = place.n
         hp, _, hm, _ = rows(order)
         for k in range(-2, n + 1):
@@ -113,7 +113,7 @@ class Held(NamedTuple):
             m = n - 1
             room[HL + m] = room[HR + m] = max(room[hp + m] - room[THETA + m] * max(-room[E + m], 0.0), 0.0)
 
-    def fluxes(scheme, order, flux, ground, dt, place, room):  # noqa: N805
+    def fluxes(scheme, order, flux, ground, dt, place, room):
         n, bed = place.n, ground.bed
         held_flux(flux, scheme, order, ground, dt / ground.dx, place, room)
         for k in range(-1, n):
@@ -124,7 +124,7 @@ class Held(NamedTuple):
             room[F2 + k] = pressure(left, room[HL + k], right, room[HR + k]) if still else room[F2 + k]
         return 0.0
 
-    def settle(scheme, order, force, flux, ground, dt, place, room):  # noqa: N805
+    def settle(scheme, order, force, flux, ground, dt, place, room):
         n, bed, law, begin = place.n, ground.bed, ground.law, place.begin
         made = settle_heights(order, flux, bed, place, room)
         grip_dt, driven = dt * grip(law), 0
@@ -147,15 +147,15 @@ class Held(NamedTuple):
             room[J + k] = -room[QHAT + k] if still else stopped
         return made
 
-    def has_own_density(scheme, order, k, room):  # noqa: N805
+    def has_own_density(scheme, order, k, room):
         hp, _, hm, _ = rows(order)
         return (hp != H) | (room[HL + k] != room[hp + k]) | (room[HR + k] != room[hm + k + 1])
 
-    def own_states(scheme, order, k, room):  # noqa: N805
+    def own_states(scheme, order, k, room):
         _, up, _, um = rows(order)
         return room[HL + k], room[up + k], room[HR + k], room[um + k + 1]
 
-    def capped(scheme):  # noqa: N805
+    def capped(scheme):
         return True
 
 

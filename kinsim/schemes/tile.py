@@ -45,7 +45,7 @@ SIZE = WIDTH * len(NAMES)
 
 
 class Place(NamedTuple):
-    """Where a tile stands: its first cell (of arrays with two ghosts at each end), how many, and whether it is at an end."""
+    """Where a tile stands: its first cell (of arrays with two ghosts at each end), their number, and at which end it is."""
 
     begin: int
     n: int

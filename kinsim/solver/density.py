@@ -15,6 +15,7 @@ from ..kinetic.equilibrium.questions import reports
 from ..kinetic.force import moves_nodes
 from ..kinetic.rows import Resummed, cell_rows, density, face_rows, push_all
 from ..kinetic.velocity import Grid, Uniform, Window
+from ..method import Kinetic
 from ..schemes.questions import comes_back, has_own_density
 from ..schemes.tile import TILE, Place
 from .march import REACH
@@ -22,6 +23,7 @@ from .model import model_of, strongest
 
 if TYPE_CHECKING:
     from .stages import Stages
+
 
 class Density:
     """The density in one step, whose stages are known; rows are cells, columns velocities.
@@ -34,14 +36,17 @@ class Density:
     def __init__(self, stages: Stages, grid: Grid | None = None) -> None:
         self._stages = stages
         solver, method = stages.solver, stages.solver.method
+        assert isinstance(method, Kinetic)
+        assert isinstance(method.velocity, Uniform | Window)
         self._scene, self._method, self._model = solver.scene, method, solver.model
+        self._velocity = method.velocity
         self.grid = grid or self._own_grid()
         if self.grid != solver.grid:
             self._model = model_of(solver.scene, method, self.grid)
         self.xi = self.grid.xi
 
     def _own_grid(self) -> Grid:
-        velocity = self._method.velocity
+        velocity = self._velocity
         if isinstance(velocity, Uniform):
             return velocity.grid(0.0)
         room = self._stages.dt * strongest(self._scene) + velocity.dxi
@@ -108,7 +113,7 @@ class Density:
     @cached_property
     def lost(self) -> float:
         """Mass that the force pushed out of the window, per dx."""
-        if isinstance(self._method.velocity, Window):
+        if isinstance(self._velocity, Window):
             return 0.0
         return float(self._forced["lost"])
 

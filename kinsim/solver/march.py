@@ -64,7 +64,7 @@ ROUNDING = 1e-12
 """By so much may Courant numbers and velocity windows be passed: the rounding of their own computation."""
 
 THIN = 1e-3
-"""Cells lower than this share of the highest one do not count as having left the ground: velocities mean little there."""
+"""Cells lower than this share of the highest one do not count as having left the ground."""
 
 FASTEST_OF_ALL = 1e100
 """Velocities beyond are refused: third moments have to be numbers, and so have sums of them."""
@@ -79,8 +79,9 @@ class Asked(NamedTuple):
     `dt` is the length of steps, or `number` the Courant number, with `falling` the speed of a grain that starts to
     slide and `shortest` the least step worth taking; `limit` the largest Courant number; `room` the largest sums;
     `bound` the velocity window, at which it `stops`; `pull` the largest acceleration, `tight` the speed from which the
-    force may push f over the edge; a momentum up to `still` + `still_per_h` max h is rest, which `stop_at_rest` ends; `until` a time to land on; `past` a time after
-    which to come back; `lifts` is 1 if lifting cells are counted, 2 if they end the run.
+    force may push f over the edge; a momentum up to `still` + `still_per_h` max h is rest, which `stop_at_rest` ends;
+    `until` a time to land on; `past` a time after which to come back; `lifts` is 1 if lifting cells are counted, 2 if
+    they end the run.
     """
 
     dt: float
@@ -311,16 +312,17 @@ def next_dt(asked: Asked, planned: Array, top: float, fast: float, dx: float, se
 @kernel
 def march(
     shape: Shape, parts: Parts, lifting: Array, asked: Asked, planned: Array, most: int, states: Any, rooms: Array,
-    kept: Array, dts: Array, seen: Array, fresh: bool,
+    kept: Array, dts: Array, seen: Array, fresh: bool, whole: bool,
 ) -> tuple[int, int]:  # fmt: skip
     """At most `most` steps; returns how many were made, and why it ended.
 
     `states` are three times (h, q) with two ghosts at each end: the state, the one before it, room for the next one;
-    they take turns. `rooms` is one room for all tiles, or one for each. A step that is refused leaves all as it was.
+    they take turns. `rooms` is one room for all tiles, or with `whole`, which makes all stages, one for each. A step
+    that is refused leaves all as it was.
     """
     (h, q), (h0, q0), (h1, q1) = states
     dx, left, right = shape.dx, shape.left, shape.right
-    nx, tiles, one_room = h.size - 4, kept.shape[0], rooms.shape[0] == 1
+    nx, tiles = h.size - 4, kept.shape[0]
     streams = max(speed_of(left, shape.beta_left), speed_of(right, shape.beta_right))
     if fresh:
         survey(parts, h, q, kept, rooms[0])
@@ -336,9 +338,8 @@ def march(
             reason = TOO_SHORT
         elif not courant <= asked.limit or not courant < math.inf:
             reason = COURANT
-        elif one_room and max(fast, streams) + dt * asked.pull > asked.tight:
+        elif not whole and max(fast, streams) + dt * asked.pull > asked.tight:
             reason = TIGHT
-        whole = not one_room
         before, reach, still = 1.0, max(fast, streams), True
         for tile in range(tiles if reason == COUNTED else 0):
             now_moved = kept[tile, MOVED_RIGHT]
@@ -350,7 +351,7 @@ def march(
             if whole or not asleep:
                 begin = 2 + tile * TILE
                 place = Place(begin, min(TILE, nx + 2 - begin), first, last)
-                sweep(shape, parts, place, h, q, dt, h1, q1, whole, rooms[0 if one_room else tile], kept[tile])
+                sweep(shape, parts, place, h, q, dt, h1, q1, whole, rooms[tile if whole else 0], kept[tile])
                 seen[SWEPT] += 0.0 if kept[tile, RESTS] > 0.0 else place.n
             reach, still = max(reach, kept[tile, FACES]), still & (kept[tile, CHANGE] == 0.0)
         seen[REACH] = max(seen[REACH], reach)

@@ -1,4 +1,4 @@
-"""A scene and a method made ready: `march` takes a block of steps, `stages` one step with all that is made on its way."""
+"""A scene and a method made ready: `march` takes a block of steps, `stages` one with all that is made on its way."""
 
 from __future__ import annotations
 
@@ -35,6 +35,7 @@ from .march import (
     TIGHT,
     Asked,
     T,
+    count_velocity,
     march,
     speed_of,
 )  # fmt: skip
@@ -183,7 +184,7 @@ class Solver:
         """Whether the clock has no step left."""
         if isinstance(clock, Courant):
             return self.t >= clock.end
-        return self.seen[TICKS] >= clock.ticks and self.seen[LEFT_OVER] == 0.0
+        return bool(self.seen[TICKS] >= clock.ticks and self.seen[LEFT_OVER] == 0.0)
 
     def march(self, clock: AnyClock, most: int, until: float = math.inf, past: float = math.inf) -> Block:
         """At most `most` steps, to land on the time `until`, and no further than the first one at or after `past`."""
@@ -202,10 +203,12 @@ class Solver:
                 asked, reason = self._asked(clock, min(until, clock.end), past), COUNTED
         return Block(reason, dts[:done].copy(), self.step, self.t, self.h, self.q, self.ended(clock), self)
 
-    def _go(self, asked: Asked, planned: Array, most: int, rooms: Array, dts: Array) -> tuple[int, int]:
+    def _go(
+        self, asked: Asked, planned: Array, most: int, rooms: Array, dts: Array, whole: bool = False
+    ) -> tuple[int, int]:
         steps, reason = march(
             self._shape, self._rows, self._lifting, asked, planned, most, tuple(self._states), rooms, self._kept, dts,
-            self.seen, self._fresh,
+            self.seen, self._fresh, whole,
         )  # fmt: skip
         if steps < most:
             self.attempted = float(dts[steps])
@@ -219,7 +222,7 @@ class Solver:
 
     def _go_tight(self, asked: Asked, planned: Array, dts: Array) -> tuple[int, int]:
         """One step in which the density may lose mass over the edge of its window: look at it, and book the loss."""
-        steps, reason = self._go(asked, planned, 1, np.zeros((self._tiles, SIZE)), dts)
+        steps, reason = self._go(asked, planned, 1, np.zeros((self._tiles, SIZE)), dts, whole=True)
         if steps:
             density = self.last_stages.density
             self.seen[LOST_ALL] += self.scene.cells.dx * (density.lost + density.cut)
@@ -280,7 +283,7 @@ class Solver:
         report = other.model.flux.report.copy() if self.grid is not None else np.empty(0)
         march(
             other._shape, other._rows, self._lifting, asked, np.empty(0), 1, tuple(other._states), rooms, other._kept,
-            np.empty(1), other.seen, True,
+            np.empty(1), other.seen, True, True,
         )  # fmt: skip
         if self.grid is not None:
             other.model.flux.report[:] = report
@@ -321,4 +324,3 @@ def fresh_seen() -> Array:
     seen[[H_MIN, LIFT_FROM, LIFT_SINCE, LIFT_LEAST]] = math.inf
     seen[LIFT_TO] = -math.inf
     return seen
-

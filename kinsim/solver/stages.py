@@ -16,6 +16,7 @@ from .march import IN_LEFT_ALL, IN_RIGHT_ALL, MADE_ALL, MENDED_ALL
 if TYPE_CHECKING:
     from .solver import Solver
 
+
 class Books(NamedTuple):
     """What one step did to the mass (h times length), beyond moving it about."""
 

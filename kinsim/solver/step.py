@@ -91,7 +91,9 @@ class Step:
             balanced = Faces(stages["h_mean"], u[:-1], stages["h_mean"], u[1:])
         elif scheme == 4 and method.statics == "hold":
             balanced = Faces(stages["h_left"], upwind.u_left, stages["h_right"], upwind.u_right)
-        states = balanced if scheme == 4 and not sloped else (upwind if scheme == 1 or not (two or scheme == 4) else None)
+        states = (
+            balanced if scheme == 4 and not sloped else (upwind if scheme == 1 or not (two or scheme == 4) else None)
+        )
         half = np.zeros((4, h.size - 2))
         betas = np.broadcast_to(np.asarray(solver.scene.beta, dtype=float), h[1:-1].shape).copy()
         if getattr(method, "flux", None) is None:

@@ -14,10 +14,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from kinsim.kinetic.equilibrium import EQUILIBRIA, EquilibriumName, Status
 from kinsim.kinetic.velocity import Grid
-from kinsim.macroscopic.half_moments import half_moments_of_cells
+from kinsim.macroscopic.closed_form import ClosedForm, half_moments_of_cells
 from kinsim.mean import mean_velocity
+from kinsim.method import EquilibriumName, fill, weights
 from kinsim.smooth.affine import affine_map
 from kinsim.smooth.riccati import riccati
 from laboratory.bend import Bend
@@ -115,7 +115,7 @@ CLOSED = Closed()
 def half_moments(rho: Array, u: Array) -> Array:
     """I1..I4 with beta = 1, shape (4, cells)."""
     found = np.empty((4, rho.size))
-    half_moments_of_cells(np.ascontiguousarray(rho), np.ascontiguousarray(u), 1.0, found)
+    half_moments_of_cells(ClosedForm(), np.ascontiguousarray(rho), np.ascontiguousarray(u), np.ones(rho.size), found)
     return found
 
 
@@ -134,14 +134,12 @@ class OnNodes:
     weights: EquilibriumName = "cell-average"
 
     def rows(self, rho: Array, u: Array) -> Array:
-        rows = np.empty((rho.size, self.grid.count))
-        EQUILIBRIA["cell-average"].fill(rho, u, rho, u, 1.0, self.grid, rows, Status.empty(rho.size))
-        return rows
+        return fill("cell-average", rho, u, rho, u, 1.0, self.grid)
 
     def transport(self, bend: Bend, w: Array, h: Array, u: Array, dt: float) -> tuple[Array, Array, Array]:
         M = self.rows(bend.beta * h, u) * (w / bend.beta)[:, None]
         half, xi = self.grid.half, self.grid.xi
-        w1, w2 = EQUILIBRIA[self.weights].weights(self.grid)
+        w1, w2 = weights(self.weights, self.grid)
         face = np.concatenate([M[1:, :half], M[:-1, half:]], axis=1)
         F1 = face[:, half:] @ w1 - face[:, half - 1 :: -1] @ w1
         F2 = face[:, half:] @ w2 + face[:, half - 1 :: -1] @ w2

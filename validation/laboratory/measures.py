@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from kinsim import Cells, ConstantSlope, Coulomb, Fixed, Kinetic, Macroscopic, Profile, Run, Scene, load_scene, simulate
-from kinsim.kinetic.equilibrium import EQUILIBRIA, Status
-from kinsim.kinetic.fitted import gauss_jacobi
+from kinsim.kinetic.equilibrium import fill, weights
+from kinsim.kinetic.gauss_jacobi import gauss_jacobi
 from kinsim.kinetic.velocity import Fitted
 from kinsim.mean import mean_velocity
 from kinsim.simulate import find_bound
@@ -98,11 +98,10 @@ def moment_defects(run: Run) -> tuple[float, float, float]:
 
 
 def _sums_off(run: Run, h: Array, u: Array, c: Array) -> Array:
-    beta, room = run.scene.beta, EQUILIBRIA[run.method.equilibrium]
+    beta, name = run.scene.beta, run.method.equilibrium
     grid = run.method.velocity.grid(float((np.abs(u) + c).max()))
-    rows = np.empty((h.size, grid.count))
-    room.fill(h, u, h, u, beta, grid, rows, Status.empty(h.size))
-    w1, w2 = room.weights(grid)
+    rows = fill(name, h, u, h, u, beta, grid)
+    w1, w2 = weights(name, grid)
     up, down = rows[:, grid.half :], rows[:, grid.half - 1 :: -1]
     sums = grid.dxi * rows.sum(axis=1), (up - down) @ w1, (up + down) @ w2
     return np.array(sums) - [h, h * u, h * u * u + 0.5 * beta * h * h]
@@ -116,10 +115,10 @@ def _fitted_defects(run: Run, h: Array, u: Array, c: Array) -> Array:
 
 
 def _smaller_side(count: int, h: Array, c: Array, b: Array) -> list[Array]:
-    s, weights = gauss_jacobi(count)
+    s, W = map(np.array, gauss_jacobi(count))
     b = b[:, None]
     nodes = c[:, None] * b * (1.0 - s)
-    masses = 2.0 / math.pi * h[:, None] * b**1.5 * weights * np.sqrt(2.0 - b * s) / (1.0 - s)
+    masses = 2.0 / math.pi * h[:, None] * b**1.5 * W * np.sqrt(2.0 - b * s) / (1.0 - s)
     return [(masses * nodes**k).sum(axis=1) for k in range(3)]
 
 

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from kinsim import Cells, ConstantSlope, Coulomb, Courant, Frictionless, Kinetic, Macroscopic, Profile, Scene
+from kinsim import Cells, ConstantSlope, Coulomb, Fixed, Frictionless, Kinetic, Macroscopic, Profile, Scene
 from kinsim.exact import random_pile
-from kinsim.stepper import Stepper, make_stepper
+from kinsim.solver.solver import Solver
 
 Array = NDArray[np.float64]
 DELTA = 0.3
@@ -30,8 +30,8 @@ REPAIRED = [name for name in SCHEMES if name.startswith("4")]
 
 
 def courant(method: Macroscopic | Kinetic, share: float = 0.9) -> float:
-    """A Courant number: a share of the largest, which is 1, or 1/2 in second order."""
-    return share * (0.5 if method.order == 2 else 1.0)
+    """A Courant number: a share of the largest."""
+    return share * Solver.limit
 
 
 def scene_of(
@@ -60,15 +60,15 @@ def shaken(scene: Scene, size: float, seed: int = 0) -> tuple[Array, Array]:
 
 def steps(
     scene: Scene, method: Macroscopic | Kinetic, h: Array, q: Array, count: int, number: float
-) -> Iterator[tuple[Stepper, float]]:
-    """Take `count` steps from (h, q) at a Courant number, until something is not finite: the stepper after each, dt."""
-    stepper = make_stepper(scene, method)
+) -> Iterator[tuple[Array, Array, float]]:
+    """Take `count` steps from (h, q) at a Courant number, until something is not finite: h, q after each, and dt."""
+    solver = Solver(scene, method, force=True)
+    solver.put(h, q)
+    solver.warm_up()
     for _ in range(count):
-        dt = Courant(number, 1e9).next_dt(0, 0.0, stepper.begin(h, q), scene.cells.dx)
-        assert dt is not None
-        dt = min(dt, scene.cells.dx)  # where all is dry or as good as
-        stepper.advance(dt)
-        h, q = stepper.now.h1.copy(), stepper.now.q1.copy()
-        yield stepper, dt
-        if not (np.isfinite(h).all() and np.isfinite(q).all()):
+        speed = solver.quickest
+        dt = min(number * scene.cells.dx / speed, scene.cells.dx) if speed > 0.0 else scene.cells.dx
+        taken = solver.march(Fixed(dt, 10**9), 1).dts.size > 0
+        yield (solver.h.copy(), solver.q.copy(), dt) if taken else (h + np.nan, q + np.nan, dt)
+        if not taken:
             return

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from kinsim import Fitted, Kinetic, Uniform
 from kinsim.kinetic.equilibrium import EQUILIBRIA
 from kinsim.kinetic.force import FORCES
-from kinsim.kinetic.project import PROJECTIONS
 from kinsim.kinetic.velocity import Window
+from kinsim.rooms import PROJECTIONS
 
 FITTED = range(2, 9)
 """Nodes of `Fitted` that are looked at."""

@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 
+from ...arrays import Array
 from ...method import EquilibriumName
 from ..velocity import Grid
 from .averages import CellAverage, Sampled
 from .entropic import Entropic
 from .matched import Matched
-from .questions import Array, both_sides, fill_rows, is_sampled, one_side, reports, wider
+from .questions import both_sides, fill_rows, is_sampled, one_side, reports, wider
 from .status import Status
 
 EQUILIBRIA: dict[EquilibriumName, Any] = {

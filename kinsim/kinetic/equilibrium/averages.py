@@ -7,18 +7,18 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...arrays import Array
 from ...kernel import at, formula, kernel, routine
 from ...macroscopic.closed_form import arc
-from .questions import Array
 
 
 class Sampled(NamedTuple):
     """M of (12) at the nodes; keeps mass only to n^-1.5."""
 
-    def one_side(equilibrium, h, u, beta, dxi, side, other):  # noqa: N805
+    def one_side(equilibrium, h, u, beta, dxi, side, other):
         return sample(h, u, beta, dxi, side)
 
-    def is_sampled(equilibrium):  # noqa: N805
+    def is_sampled(equilibrium):
         return True
 
 
@@ -28,7 +28,7 @@ class CellAverage(NamedTuple):
     A sum of xi_j^2 over cell averages carries a spurious h dxi^2/12, which the weight xi_j^2 - dxi^2/12 removes.
     """
 
-    def one_side(equilibrium, h, u, beta, dxi, side, other):  # noqa: N805
+    def one_side(equilibrium, h, u, beta, dxi, side, other):
         return average(h, u, beta, dxi, side)
 
 
@@ -39,7 +39,7 @@ def nodes_between(slowest: float, quickest: float, dxi: float, half: int) -> tup
     For u - c may be u, at the edge of a velocity cell.
     """
     begin = int(min(max(slowest / dxi - 1.0, 0.0), half))
-    return begin, max(int(math.ceil(min(max(quickest / dxi + 1.0, 0.0), half))), begin)
+    return begin, max(math.ceil(min(max(quickest / dxi + 1.0, 0.0), half)), begin)
 
 
 @routine()

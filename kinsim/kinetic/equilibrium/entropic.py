@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ...arrays import Array
 from ...kernel import routine
 from .few_nodes import few_nodes
-from .questions import Array
 from .status import CONVERGED
 
 LONGEST = 60
@@ -30,13 +30,13 @@ class Entropic(NamedTuple):
     is thinner than the grid two nodes carry it exactly.
     """
 
-    def both_sides(equilibrium, h, u, beta, dxi, P, N):  # noqa: N805
+    def both_sides(equilibrium, h, u, beta, dxi, P, N):
         return entropic_sides(h, u, beta, dxi, P, N) if u >= 0.0 else entropic_sides(h, -u, beta, dxi, N, P)
 
-    def reports(equilibrium):  # noqa: N805
+    def reports(equilibrium):
         return True
 
-    def wider(equilibrium, dxi):  # noqa: N805
+    def wider(equilibrium, dxi):
         return dxi
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from ...arrays import Array
 from ...kernel import routine
-from .questions import Array
 from .status import MASS_ONLY, TWO_MOMENTS, TWO_NODES
 
 

@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...arrays import Array
 from ...kernel import routine
 from .averages import average
 from .few_nodes import few_nodes
-from .questions import Array
 from .status import CONVERGED
 
 LARGEST = float(np.finfo(float).max)
@@ -24,13 +24,13 @@ class Matched(NamedTuple):
     negative, few nodes take over.
     """
 
-    def both_sides(equilibrium, h, u, beta, dxi, P, N):  # noqa: N805
+    def both_sides(equilibrium, h, u, beta, dxi, P, N):
         return matched_sides(h, u, beta, dxi, P, N) if u >= 0.0 else matched_sides(h, -u, beta, dxi, N, P)
 
-    def reports(equilibrium):  # noqa: N805
+    def reports(equilibrium):
         return True
 
-    def wider(equilibrium, dxi):  # noqa: N805
+    def wider(equilibrium, dxi):
         return dxi
 
 

@@ -17,7 +17,9 @@ from ...kernel import generic, question, routine, short_question
 
 
 @question
-def one_side(equilibrium: Any, h: float, u: float, beta: float, dxi: float, side: Array, other: Array) -> tuple[int, int]:
+def one_side(
+    equilibrium: Any, h: float, u: float, beta: float, dxi: float, side: Array, other: Array
+) -> tuple[int, int]:
     """M at the nodes xi > 0, and 0 where it has none; returns the first node and one past the last that it may reach.
 
     `other` is to work in.
