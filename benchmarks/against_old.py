@@ -189,7 +189,7 @@ def cases() -> Iterator[Case]:
         ground, end = grounds[(at + at // 7) % 7], ends[(3 * at + at // 8) % 8]
         if how in balanced and state == "films" and (kind != "step" or wing in ("grid32", "window")):
             state = "wet"
-        elif kind == "hidden":  # cells sleep only where nobody looks into f
+        elif kind == "hidden":  # tiles at rest are not swept where nobody looks into f
             state = "blocks" if state == "wild" else "heap"
         clock, dumps = "step" if kind == "step" else CLOCKS[(at + at // 4) % 4], () if kind == "hidden" else ("force",)
         name = "/".join((kind, ground, how, wing, state, end, clock))

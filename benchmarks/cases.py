@@ -1,4 +1,4 @@
-"""What is timed: the same breaking dam everywhere, taken anew from the same state in each step."""
+"""What is timed: the same breaking dam everywhere, in steps so short that it stays where it is."""
 
 from __future__ import annotations
 
@@ -8,15 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from kinsim import Cells, ConstantSlope, Coulomb, Fitted, Kinetic, Macroscopic, Profile, Scene, Uniform
-from kinsim.kinetic.equilibrium import EQUILIBRIA
-from kinsim.kinetic.force import FORCES
-from kinsim.kinetic.wing import Density
+from kinsim import Cells, ConstantSlope, Coulomb, Fixed, Kinetic, Macroscopic, Profile, Scene, Uniform
 from kinsim.method import SchemeNumber
-from kinsim.stepper import Stepper, make_stepper
+from kinsim.solver.solver import Solver
 
 Array = NDArray[np.float64]
 Call = Callable[[], object]
+
+SHORT, MANY = 1e-9, 10**9
+"""Steps that are timed: their length over that of a case, and more than there are."""
+
+TOGETHER = 50_000
+"""Cells that a call steps at least: a run marches many steps between two looks from outside."""
 
 
 @dataclass(frozen=True)
@@ -53,43 +56,31 @@ class Case:
 
 
 class Step:
-    """One step of kinsim from the state of a case, as its time loop takes it."""
-
-    stepper: Stepper
+    """Steps of kinsim from the state of a case, as its time loop takes them; `steps` of them in a call."""
 
     def __init__(self, case: Case, method: Kinetic | Macroscopic) -> None:
         self._case, self.method = case, method
-        self.stepper = self._make()
+        self.solver, self.clock = Solver(case.scene, method), Fixed(SHORT * case.dt, MANY)
+        self.steps = max(1, TOGETHER // case.h.size)
+        self.solver.put(case.h, case.q)
         self()
 
-    def _make(self) -> Stepper:
-        return make_stepper(self._case.scene, self.method)
-
     def __call__(self) -> None:
-        case = self._case
-        self.stepper.begin(case.h, case.q)
-        self.stepper.advance(case.dt)
+        self.solver.march(self.clock, self.steps)
 
     def result(self) -> list[Array]:
-        """h and q at level n + 1, and f where it is kept."""
-        now, density = self.stepper.now, self.stepper.density
-        return [now.h1.copy(), now.q1.copy()] + ([density.f.copy()] if density else [])
+        """h and q after the step of the case, and f if there is a grid."""
+        solver = Solver(self._case.scene, self.method)
+        solver.put(self._case.h, self._case.q)
+        solver.march(Fixed(self._case.dt, 1), 1)
+        found = [solver.h.copy(), solver.q.copy()]
+        return [*found, solver.last_stages.density.f] if solver.grid else found
 
-    def of_rooms(self) -> list[Array]:
-        """The same by the rooms, which define the step."""
-        return Rooms(self._case, self.method).result()
-
-
-class Rooms(Step):
-    """The same, stage by stage, where f is stored: what every faster path has to give."""
-
-    def _make(self) -> Stepper:
-        scene, method = self._case.scene, self.method
-        stepper = Stepper(scene, method)
-        if stepper.density and isinstance(method, Kinetic) and not isinstance(method.velocity, Fitted):
-            how = EQUILIBRIA[method.equilibrium], FORCES[method.force]
-            stepper.wing = stepper.density = Density(scene, method.velocity, *how, stepper.scheme)
-        return stepper
+    def of_stages(self) -> list[Array]:
+        """The same out of all stages as arrays, which define the step."""
+        stages = Solver(self._case.scene, self.method).stages(self._case.h, self._case.q, self._case.dt)
+        found = [stages["h1"], stages["q1"]]
+        return [*found, stages.density.f] if stages.solver.grid and stages.density.M.size else found
 
 
 class Looked(Step):
@@ -97,10 +88,13 @@ class Looked(Step):
 
     f: Array
 
+    def __init__(self, case: Case, method: Kinetic | Macroscopic) -> None:
+        super().__init__(case, method)
+        self.steps = 1
+
     def __call__(self) -> None:
         super().__call__()
-        assert self.stepper.density is not None
-        self.f = self.stepper.density.f
+        self.f = self.solver.last_stages.density.f
 
 
 def stored(case: Case, n: int, scheme: SchemeNumber = 1) -> Step:

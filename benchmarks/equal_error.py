@@ -118,9 +118,9 @@ def main() -> None:
         return
     ways: dict[str, tuple[Callable[[int], Answer], int]] = {
         "scheme 4, first order, Courant 0.9": (partial(kinsim_run, 0.9, 1, "between", "closed"), 2000),
-        "scheme 4, second order, between, Courant 0.49": (partial(kinsim_run, 0.49, 2, "between", "closed"), 250),
-        "scheme 4, second order, mc, Courant 0.49": (partial(kinsim_run, 0.49, 2, "mc", "closed"), 250),
-        "scheme 4, second order, mc, 6 fitted nodes": (partial(kinsim_run, 0.49, 2, "mc", "fitted"), 250),
+        "scheme 4, second order, between, Courant 0.9": (partial(kinsim_run, 0.9, 2, "between", "closed"), 250),
+        "scheme 4, second order, mc, Courant 0.9": (partial(kinsim_run, 0.9, 2, "mc", "closed"), 250),
+        "scheme 4, second order, mc, 6 fitted nodes": (partial(kinsim_run, 0.9, 2, "mc", "fitted"), 250),
     }
     if asked.clawpack:
         for limiter in ("MC", "minmod"):

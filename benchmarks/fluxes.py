@@ -38,7 +38,7 @@ def at_size(quick: bool) -> Iterator[Row]:
     calls = {f"scheme {scheme}": Step(case, Macroscopic(scheme)) for scheme in (1, *BALANCED)}
     calls |= {f"fitted {count}": Step(case, Kinetic(1, Fitted(count))) for count in PROMISED}
     for name, call in calls.items():
-        same(f"{name}, rooms", call.result(), call.of_rooms())
+        same(f"{name}, stages", call.result(), call.of_stages())
     closed = calls["scheme 1"].result()
     same("NumPy, closed form", closed, plain.closed(case))
     for count, within in PROMISED.items():
@@ -80,7 +80,7 @@ def schemes_on_grid(quick: bool) -> Iterator[Row]:
     case, n = Case.dam(1000), 128
     calls = {f"scheme {scheme}": stored(case, n, scheme) for scheme in (1, *BALANCED)}
     for name, call in calls.items():
-        same(f"{name}, f stored, rooms", call.result(), call.of_rooms())
+        same(f"{name}, f stored, stages", call.result(), call.of_stages())
     times = interleave(calls, rounds=5 if quick else 15)
     for scheme, high in ((3, 3.2), (4, None)):
         ours = times[f"scheme {scheme}"]

@@ -26,7 +26,7 @@ def of_size(nx: int, n: int, quick: bool) -> Iterator[Row]:
     """The rows of one grid."""
     case, size = Case.dam(nx), f"{nx}x{n}"
     kept = stored(case, n)
-    same(f"carried f, {size}, rooms", kept.result(), kept.of_rooms())
+    same(f"carried f, {size}, stages", kept.result(), kept.of_stages())
     calls: dict[str, Callable[[], object]] = {"stored": kept}
     if library():
         native = Native(case, n)
@@ -35,7 +35,7 @@ def of_size(nx: int, n: int, quick: bool) -> Iterator[Row]:
     main = (nx, n) == SIZES[1]
     if main:
         unseen = bare(case, n)
-        same(f"window only, {size}, rooms", unseen.result(), kept.of_rooms())
+        same(f"window only, {size}, stages", unseen.result(), kept.of_stages())
         same(f"NumPy, {size}", kept.result(), plain.carried(case, n))
         calls |= {"bare": unseen, "NumPy": lambda: plain.carried(case, n), "sqrt": square_roots(nx * n)}
     times = interleave(calls, rounds=5 if quick or nx * n > 10**6 else 15)

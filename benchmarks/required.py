@@ -1,4 +1,4 @@
-"""What a scene does not require is not paid for: forces, dry cells, nodes outside the support, cells that sleep."""
+"""What a scene does not require is not paid for: forces, dry cells, nodes outside the support, cells that rest."""
 
 from __future__ import annotations
 
@@ -16,7 +16,6 @@ from kinsim import (
     Cells,
     ConstantSlope,
     Coulomb,
-    Fixed,
     Frictionless,
     Kinetic,
     Macroscopic,
@@ -25,17 +24,13 @@ from kinsim import (
     Uniform,
     Window,
 )
-from kinsim.clock import Replay
-from kinsim.simulate import Loop
+from kinsim.solver.march import SWEPT
 
 CELLS, NODES = 1000, 128
 """Of the scenes on a grid."""
 
 RESTING = 20_000
 """Cells of the scenes that rest."""
-
-STEPS = 50_000
-"""More than are timed."""
 
 
 class Pair(NamedTuple):
@@ -51,15 +46,15 @@ def rows(quick: bool) -> Iterator[Row]:
     rounds = 5 if quick else 15
     for pair in (*without_force(), *with_dry_cells(), *in_a_window()):
         yield compared(pair, rounds)
-    for share, words in ((1.0, "all cells asleep"), (0.5, "half of the cells asleep")):
-        yield in_the_loop(f"{words} / all awake, closed form", share, Macroscopic(4), rounds)
-        yield in_the_loop(f"{words} / all awake, f not stored", share, Kinetic(4, Uniform(64, 2.0)), rounds)
+    for share, words in ((1.0, "nothing moves"), (0.5, "half moves")):
+        yield at_rest(f"{words} / everything moves, closed form", share, Macroscopic(4), rounds)
+        yield at_rest(f"{words} / everything moves, f not stored", share, Kinetic(4, Uniform(64, 2.0)), rounds)
 
 
 def compared(pair: Pair, rounds: int) -> Row:
-    """A row, after a look at whether both take the step of the rooms."""
+    """A row, after a look at whether both take the step that all stages define."""
     for step in pair[1:]:
-        same(f"{pair.what}, rooms", step.result(), step.of_rooms())
+        same(f"{pair.what}, stages", step.result(), step.of_stages())
     times = interleave({"less": pair.less, "all": pair.all}, rounds)
     less, more = times["less"], times["all"]
     return ratio(pair.what, less, more, None, f"{less.words(1e-6, 'us')}; {more.words(1e-6, 'us')}")
@@ -99,32 +94,25 @@ def in_a_window() -> Iterator[Pair]:
         yield pair
 
 
-def in_the_loop(what: str, share: float, method: Kinetic | Macroscopic, rounds: int) -> Row:
-    """Steps of `simulate` through a scene of which a share rests: with a clock of one dt cells sleep, else they do not.
+def at_rest(what: str, share: float, method: Kinetic | Macroscopic, rounds: int) -> Row:
+    """Steps through a scene of which a share rests beside one that slides as a whole.
 
-    The rest of the mass slides; the steps are so short that it stays where it is.
+    The steps are so short that the mass stays where it is.
     """
     cells = Cells(-6.0, 6.0, RESTING)
-    x = cells.x
-    slides = np.arange(RESTING) >= share * RESTING
-    heap = Profile(1.0 + 0.1 * np.sin(x), np.where(slides, 0.5, 0.0))
-    scene = Scene(cells, heap, ConstantSlope(0.1), Coulomb(0.3), epsilon=0.4)
-    dt = 0.5 * cells.dx / scene.fastest if share == 1.0 else 1e-6 * cells.dx
-    sleeps = Loop(scene, method, Fixed(dt, STEPS), 2**40, False)
-    wakes = Loop(scene, method, Replay((dt,) * STEPS, STEPS * dt), 2**40, False)
     calls: dict[str, Call] = {}
-    for name, loop in (("sleeps", sleeps), ("wakes", wakes)):
-        loop.start()
-        steps = loop.steps()
-        calls[name] = lambda steps=steps: next(steps)  # type: ignore[misc]
-    for _ in range(20):
-        for call in calls.values():
-            call()
-    same(what, [sleeps.h, sleeps.q], [wakes.h, wakes.q], within=0.0)
+    for name, at in (("less", share), ("all", 0.0)):
+        slides = np.arange(RESTING) >= at * RESTING
+        heap = Profile(1.0 + 0.1 * np.sin(cells.x), np.where(slides, 0.5, 0.0))
+        scene = Scene(cells, heap, ConstantSlope(0.1), Coulomb(0.3), epsilon=0.4)
+        h, q = scene.initial()
+        case = Case(scene, h, q, 1e3 * cells.dx, 2.0)  # of which a step of `Step` is a billionth
+        calls[name] = step = Step(case, method)
+        for _ in range(20):
+            step()
+        swept = float(step.solver.seen[SWEPT]) / (step.solver.step * RESTING)
+        if abs(swept - (1.0 - at)) > 0.05:
+            raise AssertionError(f"{what}: {swept:.0%} of the cells were swept where {1.0 - at:.0%} move")
     times = interleave(calls, rounds)
-    for loop, awake in ((sleeps, 1.0 - share), (wakes, 1.0)):
-        stepped = loop.awake.cell_steps / (loop.step * RESTING)
-        if abs(stepped - awake) > 0.05:
-            raise AssertionError(f"{what}: {stepped:.0%} of the cells were stepped where {awake:.0%} are awake")
     detail = "; ".join(time.words(1e-6, "us") for time in times.values())
-    return ratio(what, times["sleeps"], times["wakes"], 0.2 if share == 1.0 else None, detail)
+    return ratio(what, times["less"], times["all"], 0.2 if share == 1.0 else None, detail)

@@ -17,7 +17,7 @@ from cases import Array, Call
 
 @dataclass(frozen=True)
 class Times:
-    """Seconds of the thread per call, sorted."""
+    """Seconds of the thread per call, or per step of a call that takes several; sorted."""
 
     all: tuple[float, ...]
 
@@ -39,7 +39,7 @@ def interleave(calls: Mapping[str, Call], rounds: int = 9, least: float = 1e-2) 
     repeats = {}
     for name, call in calls.items():
         call()
-        once = _once(call, 1)
+        once = _once(call, 1) * getattr(call, "steps", 1)
         repeats[name] = max(1, math.ceil(least / max(once, 1e-9)))
     found: dict[str, list[float]] = {name: [] for name in calls}
     for _ in range(rounds):
@@ -52,7 +52,7 @@ def _once(call: Call, repeats: int) -> float:
     began = time.thread_time()
     for _ in range(repeats):
         call()
-    return (time.thread_time() - began) / repeats
+    return (time.thread_time() - began) / (repeats * getattr(call, "steps", 1))
 
 
 def same(what: str, ours: list[Array], theirs: list[Array], within: float = 1e-12) -> None:

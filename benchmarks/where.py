@@ -123,19 +123,7 @@ def steps(quick: bool) -> Iterator[tuple[str, str]]:
     """The parts of a step."""
     for nx, n in ((400, 64),) if quick else ((400, 64), (2000, 256)):
         case = Case.dam(nx)
-        kept = stored(case, n)
-        stepper, density = kept.stepper, kept.stepper.density
-        assert density is not None
-
-        def look(kept: Step = kept, case: Case = case) -> object:
-            kept.stepper.advance(case.dt)
-            return kept.stepper.density.f  # type: ignore[union-attr]
-
-        calls: dict[str, Callable[[], object]] = {
-            "half-range sums": lambda at=stepper, case=case: at.begin(case.h, case.q),  # type: ignore[misc]
-            "U^{n+1}": lambda at=stepper, case=case: at.advance(case.dt),  # type: ignore[misc]
-            "U^{n+1} and f": look,
-        }
+        calls: dict[str, Callable[[], object]] = {"U^{n+1}": bare(case, n), "U^{n+1} and f": stored(case, n)}
         if library():
             calls["the whole step in C"] = Native(case, n)
         for what, times in interleave(calls, rounds=5 if quick else 15).items():

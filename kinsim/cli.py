@@ -121,7 +121,6 @@ def run(
     Exit code: 0 if it went to its end, 1 if it was stopped, 2 if the input is bad, 130 if it was interrupted. A
     checkpoint is removed when the run went to its end and is written to --out.
     """
-    from .overview import saved_every
     from .progress import Watched
     from .read import read_dumps
     from .simulate import simulate
@@ -163,7 +162,7 @@ def run(
                 file.scene,
                 asked,
                 file.clock,
-                saved_every(file),
+                **file.kept,
                 force=force,
                 dumps=[*dumps, *(_final_density(asked, dumps) if out or plot or checkpoint else [])],
                 causes=causes,

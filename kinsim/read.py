@@ -17,7 +17,7 @@ from .errors import InputError
 from .finding import one_line
 from .method import Kinetic, Macroscopic, Method
 from .scene import Scene
-from .value import value
+from .value import Number, Whole, value
 
 BUILT_IN = Path(__file__).parent / "scenes"
 
@@ -42,13 +42,31 @@ def _kinetic_unless_named(given: Any) -> Any:
 
 @value
 class SceneFile(Scene):
-    """What a scene file holds: the keys of a scene, the clock, and perhaps a method and the paper's figure."""
+    """What a scene file holds: the keys of a scene, the clock, and perhaps a method and the paper's figure.
+
+    Attributes:
+        save_at: Times at which the state is kept; a step ends on each.
+        rows: So many times, evenly spread, instead.
+    """
 
     clock: Annotated[Fixed | Courant, Field(discriminator="kind"), BeforeValidator(_clock_by_keys)] = field(
         kw_only=True
     )
     method: Annotated[Method, BeforeValidator(_kinetic_unless_named)] = Kinetic()
+    save_at: tuple[Annotated[Number, Field(ge=0)], ...] | None = None
+    rows: Annotated[Whole, Field(ge=1)] | None = None
     figure: str = ""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.save_at is not None and self.rows is not None:
+            raise InputError("save_at and rows are given; keep one of them")
+
+    @property
+    def kept(self) -> dict[str, Any]:
+        """Which states a run keeps, as `simulate` takes it."""
+        asked = {"save_at": self.save_at, "rows": self.rows}
+        return {name: value for name, value in asked.items() if value is not None}
 
     @property
     def scene(self) -> Scene:

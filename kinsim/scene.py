@@ -29,7 +29,7 @@ class Scene:
 
     Attributes:
         cells: The cells of the x-axis.
-        heap: Initial height and velocity.
+        heap: Initial height and velocity; also a function of the cell centres x that gives (h, u).
         chute: The ground, a constant slope (1) or a smooth one (13); sin zeta pulls along it.
         friction: Holds the mass back by at most R.
         boundary: "open", "wall" or "periodic", or a pair (left, right) of "open", "wall" and `Inflow`.
@@ -108,7 +108,7 @@ class Scene:
                 place).
         """
         x = self.cells.x
-        h, u = self.heap(x)
+        h, u = (np.broadcast_to(np.asarray(part, dtype=float), x.shape) for part in self.heap(x))
         for name, bad, remedy in (
             ("height", ~(np.isfinite(h) & (h >= 0)), "heights are finite and at least 0"),
             ("velocity", ~np.isfinite(u), "velocities are finite"),

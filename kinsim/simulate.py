@@ -188,6 +188,8 @@ class Simulation:
         self.dts.append(block.dts)
         stop = ""
         for observer in self.observers if block.dts.size else ():
+            if observer in self.own and observer.every and block.step % observer.every:
+                continue  # the block ended here for somebody else
             try:
                 said = observer.look(block)
             except Exception as error:  # of somebody's own; the run keeps what it has

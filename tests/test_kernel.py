@@ -144,19 +144,34 @@ def test_a_copy_of_the_package_takes_its_code_and_nothing_is_written_beside_sour
     assert sorted(source.rglob("*")) == before
 
 
+def frozen_by(tree: ast.Module) -> set[str]:
+    """Names in the compiled functions of a file: those with a mark, and the methods of the classes that are asked."""
+    marks = {"kernel", "formula", "routine", "generic", "question", "short_question"}
+    names: set[str] = set()
+    for thing in tree.body:
+        decorators = {part.id for d in getattr(thing, "decorator_list", []) for part in ast.walk(d)
+                      if isinstance(part, ast.Name)}  # fmt: skip
+        asked = isinstance(thing, ast.ClassDef) and any(ast.unparse(base) == "NamedTuple" for base in thing.bases)
+        if asked or marks & decorators:
+            names |= {part.id for part in ast.walk(thing) if isinstance(part, ast.Name)}
+    return names
+
+
 def test_all_numbers_that_kernels_freeze_are_stamped() -> None:
-    """What a file with formulas imports in capitals stands in a file whose edits make the compiler start anew."""
+    """What compiled functions take from another file in capitals stands in one whose edits make it anew."""
     known, frozen = set(stamped()), 0
     for path in known:
-        if not any(mark in path.read_bytes() for mark in (b"@kernel", b"@formula", b"@routine", b"@generic")):
-            continue
-        for taken in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(taken, ast.ImportFrom) and any(name.name.isupper() for name in taken.names):
-                home = PACKAGE.joinpath(*path.relative_to(PACKAGE).parts[: -taken.level], *taken.module.split("."))
-                if home.parent == PACKAGE.parent or not taken.level:
-                    continue
-                frozen += 1
-                assert home.with_suffix(".py") in known, f"{path}: {ast.unparse(taken)}"
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        used = {name for name in frozen_by(tree) if name.isupper()}
+        for taken in ast.walk(tree):
+            if not (isinstance(taken, ast.ImportFrom) and taken.level and taken.module):
+                continue
+            if not used & {name.name for name in taken.names}:
+                continue
+            home = PACKAGE.joinpath(*path.relative_to(PACKAGE).parts[: -taken.level], *taken.module.split("."))
+            frozen += 1
+            file = home / "__init__.py" if home.is_dir() else home.with_suffix(".py")
+            assert file in known, f"{path}: {ast.unparse(taken)}"
     assert frozen >= 3
 
 

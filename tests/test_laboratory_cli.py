@@ -14,8 +14,8 @@ from kinsim import Dump, Fixed, InputError, Kinetic, Macroscopic, Uniform, compa
 from kinsim.cli import app
 from kinsim.kinetic.equilibrium import EQUILIBRIA
 from kinsim.kinetic.force import FORCES
-from kinsim.method import ProjectionName
 from kinsim.measure.seams import STAGES
+from kinsim.method import ProjectionName
 from kinsim.plot import plot_density, plot_seams
 
 SMALL = ["--set", "cells.count=40", "--set", "clock.steps=40", "--set", "method.velocity.count=16"]

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from conftest import EPS
 from states import random_states, scene_with
 
 from kinsim import (
@@ -48,7 +49,8 @@ SCHEMES: dict[str, dict[str, Any]] = {
 
 FACTORS: dict[str, tuple[Any, ...]] = {
     "scheme": tuple(SCHEMES),
-    "flux": ("closed", "fitted", *EQUILIBRIA),
+    "flux": ("closed", "fitted", "grid"),
+    "equilibrium": tuple(EQUILIBRIA),
     "velocity": ("uniform", "window"),
     "force": tuple(FORCES),
     "projection": ("flux-difference", "re-summed"),
@@ -58,20 +60,26 @@ FACTORS: dict[str, tuple[Any, ...]] = {
 }
 
 
+APART = {("scheme", "equilibrium"), ("scheme", "force")}
+"""Factors that meet in other tests, as each pair of them is long to compile."""
+
+
 def covering() -> list[dict[str, Any]]:
-    """Cases in which each two values of two factors meet that can."""
+    """Cases in which each two values of two factors meet that can, but for those apart."""
     dice, pool, pairs = random.Random(1), [], []
-    for _ in range(800):
+    for _ in range(1500):
         case = {name: dice.choice(values) for name, values in FACTORS.items()}
-        if case["flux"] in ("closed", "fitted"):  # they read none of these
-            case |= {"velocity": "uniform", "force": "shift-linear", "projection": "flux-difference"}
-        if case["ground"] == "smooth" and not case["scheme"].startswith("4"):
+        if case["flux"] != "grid":
+            case |= {"equilibrium": "", "velocity": "", "force": "", "projection": ""}
+        if case["ground"] == "smooth" and (case["scheme"][0] != "4" or case["boundary"] == "periodic"):
             case["ground"] = "flat"
         pool.append(case)
-        pairs.append(set(itertools.combinations(case.items(), 2)))
+        pairs.append(
+            {pair for pair in itertools.combinations(case.items(), 2) if (pair[0][0], pair[1][0]) not in APART}
+        )
     missing, chosen = set().union(*pairs), []
-    while missing:
-        best = max(range(len(pool)), key=lambda i: len(pairs[i] & missing))
+    while missing:  # what takes long to compile comes last
+        best = max(range(len(pool)), key=lambda i: (len(pairs[i] & missing), pool[i]["projection"] != "re-summed"))
         chosen.append(pool[best])
         missing -= pairs[best]
     return chosen
@@ -81,12 +89,15 @@ CASES = covering()
 
 
 def scene_of(case: dict[str, Any]) -> Scene:
-    """300 cells, two tiles: dry ones, films of 1e-12 and heights of 1, some at rest."""
+    """300 cells, two tiles: dry ones, films of 1e-12 and heights of 1; no such where methods of the paper blow up."""
     dice = np.random.default_rng(3)
-    h = dice.choice([0.0, 1e-12, 1.0, 1.0], 300) * dice.uniform(0.1, 1.0, 300)
-    h[100:140], h[250:270] = 0.0, 0.4
-    u = dice.uniform(-1, 1, 300) * dice.choice([0.0, 0.1, 1.0], 300)
-    u[250:270] = 0.0
+    h, u = dice.uniform(0.1, 1.0, 300), dice.uniform(-1, 1, 300) * dice.choice([0.0, 0.1, 1.0], 300)
+    if case["scheme"][0] in "23" or case["projection"] == "re-summed":
+        h = 0.3 + 0.2 * h
+    else:
+        h *= dice.choice([0.0, 1e-12, 1.0, 1.0], 300)
+        h[100:140] = 0.0
+    h[250:270], u[250:270] = 0.4, 0.0
     scene = scene_with(h, u, zeta=0.5 if case["ground"] == "steep" else 0.0, delta=0.3, boundary=case["boundary"])
     return replace(scene, chute=SmoothChute(Arc(30.0, 0.3), 1.0)) if case["ground"] == "smooth" else scene
 
@@ -98,16 +109,16 @@ def method_of(case: dict[str, Any]) -> Macroscopic | Kinetic:
     if case["flux"] == "fitted":
         return Kinetic(velocity=Fitted(6), **scheme)
     velocity = Uniform(24, 6.0) if case["velocity"] == "uniform" else Window(0.3)
-    chosen = {name: case[name] for name in ("force", "projection")}
-    return Kinetic(velocity=velocity, equilibrium=case["flux"], **chosen, **scheme)
+    chosen = {name: case[name] for name in ("equilibrium", "force", "projection")}
+    return Kinetic(velocity=velocity, **chosen, **scheme)
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: ", ".join(map(str, case.values())))
+@pytest.mark.parametrize("case", CASES, ids=lambda case: ", ".join(str(value) for value in case.values() if value))
 @np.errstate(all="ignore")
 def test_a_block_is_its_steps(case: dict[str, Any]) -> None:
     """n steps in a block, in two blocks, and one by one with every stage: the same bits, in the books, too."""
     scene, method = scene_of(case), method_of(case)
-    clock: AnyClock = Fixed(0.004, 100) if case["clock"] == "fixed" else Courant(0.9, 100.0)
+    clock: AnyClock = Fixed(0.004, 100) if case["clock"] == "fixed" else Courant(0.9, 1.0)
     whole, parted, single = (Solver(scene, method) for _ in range(3))
     block = whole.march(clock, 12)
     assert (block.reason, block.dts.size) == (COUNTED, 12)
@@ -128,12 +139,12 @@ def test_a_block_is_its_steps(case: dict[str, Any]) -> None:
 
 
 def beside_a_pile(zeta: float) -> Scene:
-    """3000 cells of a pile at rest, 12 tiles, and a hump on two of them that moves."""
+    """3000 cells of a pile at rest, 12 tiles, and a hump on one of them, the cells 1024 to 1279, that moves."""
     scene = scene_with(np.ones(3000), zeta=zeta, delta=0.3, boundary="wall", dx=0.01)
     fits = {"pull": scene.pull, "resistance": scene.resistance, "beta": scene.beta}
     h = random_pile(scene.cells, **fits, fill=0.9, per="face", rng=1, lowest=0.3)(scene.x)[0]
-    hump = np.maximum(1.0 - ((np.arange(3000) - 1000) / 150.0) ** 2, 0.0)
-    return replace(scene, heap=Profile(h + 0.4 * hump, np.where(hump > 0.0, 0.5, 0.0)))
+    hump = np.maximum(1.0 - ((np.arange(3000) - 1180) / 80.0) ** 2, 0.0)
+    return replace(scene, heap=Profile(h + 0.4 * hump, np.where(hump > 0.0, 0.8, 0.0)))
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.2])
@@ -143,19 +154,17 @@ def beside_a_pile(zeta: float) -> Scene:
 )  # fmt: skip
 def test_tiles_at_rest_are_skipped_to_the_bit(method: Macroscopic | Kinetic, zeta: float) -> None:
     """A march that looks at few tiles is the chain of staged steps, in which nothing is skipped; and rest wakes up."""
-    scene, clock = beside_a_pile(zeta), Fixed(0.003, 200)
-    run = simulate(scene, method, clock, 100)
+    scene, clock = beside_a_pile(zeta), Fixed(0.002, 300)
+    run = simulate(scene, method, clock, 150)
     assert run.awake < 0.7
     h, q = scene.initial()
     single = Solver(scene, method)
-    for _ in range(200):
-        stages = single.stages(h, q, 0.003)
+    for _ in range(300):
+        stages = single.stages(h, q, 0.002)
         h, q = stages["h1"], stages["q1"]
     np.testing.assert_array_equal(run.h[-1], h)
     np.testing.assert_array_equal(run.q[-1], q)
-    moved = np.flatnonzero(run.h[-1] != run.h[0])
-    assert moved.min() < 4 * 256 - 256
-    assert moved.max() > 4 * 256 + 128
+    assert np.flatnonzero(run.h[-1] != run.h[0]).max() > 1280
     assert (run.h[-1][2500:] == run.h[0][2500:]).all()
 
 
@@ -186,7 +195,7 @@ def test_steps_end_on_the_times_asked_for(name: str, method: Macroscopic | Kinet
         if isinstance(clock, Fixed):
             assert run.dt.max() <= clock.dt
         else:
-            assert run.entries["courant"].max() <= clock.number
+            assert run.entries["courant"].max() <= clock.number * (1 + 4 * EPS)
     if isinstance(clock, Fixed):  # the planned times stay where they were
         ends, planned = np.cumsum(at.dt), clock.dt * np.arange(1, 101)
         assert all(np.abs(ends - t).min() <= 1e-12 for t in planned)

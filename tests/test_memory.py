@@ -52,7 +52,7 @@ def test_memory_that_gets_short_costs_no_step(monkeypatch: pytest.MonkeyPatch) -
             raise InputError(f"{what} would take 1e99 bytes, 1 GiB are free; take fewer")
 
     monkeypatch.setattr(Courant, "steps_at", lambda *asked: 3)
-    monkeypatch.setattr(sys.modules["kinsim.simulate"], "require_history", short)
+    monkeypatch.setattr(sys.modules["kinsim.diagnostics.history"], "require_history", short)
     run = simulate(dam, Macroscopic(), Courant(0.9, 0.02), save_every=1)
     assert len(asked) == 2
     assert run.verdict.kind == "refused"

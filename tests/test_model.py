@@ -29,7 +29,6 @@ from kinsim import (
     Sine,
     Table,
     Uniform,
-    Window,
 )  # fmt: skip
 from kinsim.model.boundary import extend, extend_flag
 

@@ -1,10 +1,10 @@
 """Convergence of scheme 4 against every exact solution, dry ones included, in first and second order.
 
-First order is judged at Courant numbers 0.5 and 0.9, and so is second order. Where the solution is a
+Both are judged at Courant numbers 0.5 and 0.9; waves of both families at 1, the limit, too. Where the solution is a
 straight line first order converges like dx, and where it has jumps, corners or dry fronts between the square root of
 dx and dx; second order is not bound to that, but a jump allows no more than dx, and corners and dry fronts a little
-more. On smooth data second order is: a simple wave on a ring, before it breaks; and waves
-of both families, which have no exact solution in closed form and are judged by cells halved again and again.
+more. On smooth data second order is: a simple wave on a ring, before it breaks; and waves of both families, which have
+no exact solution in closed form and are judged by cells halved again and again.
 
 Scheme 4 has no step from wet to dry: the dam on dry ground, with and without friction, the cap, and the vacuum that
 opens between two masses are taken like everything else.
@@ -52,7 +52,7 @@ FIRST, SECOND = "first order, Courant 0.5", "second order, Courant 0.9"
 STRAIGHT = ("wedge", "steep wedge", "wedge that stops")
 HALVED = ("cap", "flat cap", "dam without friction", "dam on a wet bed", "fan and shock", "shock", "dam on dry ground",
           "Ritter")  # fmt: skip
-"""Waves and caps, on which second order halves the error at least."""
+"""Waves and caps, on which second order leaves a third of the error or less."""
 
 
 @dataclass(frozen=True)
@@ -194,7 +194,7 @@ def crossing(chapter: Chapter, counts: list[int]) -> None:
         name = f"second order, {limiter}, Courant {number}"
         rows.append([name, *apart, *falls(widths, apart)])
         chapter.claim(f"waves of both families, {name}: order in dx on the finest cells",
-                      order(widths[-2:], apart[-2:]), low=1.9, high=2.4)  # fmt: skip
+                      order(widths[-2:], apart[-2:]), low=1.9, high=2.7)  # fmt: skip
     chapter.table("Waves of both families at t = 0.3: L1 of the difference of h from cells half as wide", (
         "", *(f"dx = {width:.4g}" for width in widths), *["order"] * (len(widths) - 1)), rows)  # fmt: skip
 
@@ -209,13 +209,13 @@ def compared(chapter: Chapter, found: dict[str, Panel], wave: dict[str, list[flo
         (mc,) = sharp.errors(Macroscopic(4, order=2, limiter="mc"), Courant(0.9, sharp.end), [280])
         rows.append(row(what, e, mc))
         chapter.claim(f"{what}, dx = 0.05, Courant 0.5 and 0.9: L1(h) of first order over that of second",
-                      e[FIRST] / e[SECOND], low=2.0 if what in HALVED else 1.5)  # fmt: skip
+                      e[FIRST] / e[SECOND], low=3.5 if what in HALVED else 2.5)  # fmt: skip
     e = {name: errors[0] for name, errors in wave.items()}
     rows.append(row("simple wave", e, wave["second order, mc, Courant 0.9"][0]))
     chapter.claim(
         "simple wave, dx = 0.05, Courant 0.5 and 0.9: L1(h) of first order over that of second",
         e[FIRST] / e[SECOND],
-        low=2.0,
+        low=5.0,
     )
     chapter.table("L1(h) of first order over that of second, dx = 0.05", (
         "exact solution", "0.5 over 0.9", "0.9 over 0.9", "0.9 over 0.5", "mc, 0.5 over 0.9"), rows)  # fmt: skip

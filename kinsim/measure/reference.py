@@ -50,6 +50,6 @@ def on_grid(states: States, beta: float) -> tuple[Array, Array]:
     grid = Grid(NODES, 2.0 / NODES)
     rows = fill("cell-average", *left, *right, 1.0, grid)
     ahead, behind = rows[:, grid.half :], rows[:, : grid.half][:, ::-1]
-    (P1, P2), (N1, N2) = ((half @ w for w in weights("cell-average", grid)) for half in (ahead, -behind))
+    first, second = weights("cell-average", grid)
     unit = (reach / np.sqrt(beta)) ** 2  # of heights
-    return unit * reach * (P1 + N1), unit * reach * reach * (P2 - N2)
+    return unit * reach * ((ahead - behind) @ first), unit * reach * reach * ((ahead + behind) @ second)

@@ -7,13 +7,20 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, GetPydanticSchema
+from pydantic import (
+    BeforeValidator,
+    Field,
+    GetPydanticSchema,
+    ValidatorFunctionWrapHandler,
+    WrapSerializer,
+    WrapValidator,
+)
 from pydantic_core import core_schema
 
 from ..arrays import Array
 from ..errors import InputError
 from ..expression import check_names, evaluate
-from ..value import Number, kind, value
+from ..value import Number, described_outside, kind, value
 from .csv_table import read_columns
 
 State = tuple[Array, Array]
@@ -183,4 +190,16 @@ def _outline(array: Array) -> str:
     return f"<{array.size} values, {low} to {high}>"
 
 
-Heap = Annotated[Blocks | Parabola | Sine | Table | Expression | Profile, Field(discriminator="kind")]
+KINDS = (Blocks, Parabola, Sine, Table, Expression, Profile)
+
+
+def _from_outside(given: Any, check: ValidatorFunctionWrapHandler) -> Any:
+    """A heap of the package is checked; a function of one's own, x -> (h, u), is taken as it is."""
+    return given if callable(given) and type(given) not in KINDS else check(given)
+
+
+Heap = Annotated[
+    Annotated[Blocks | Parabola | Sine | Table | Expression | Profile, Field(discriminator="kind")],
+    WrapValidator(_from_outside),
+    WrapSerializer(described_outside),
+]

@@ -45,7 +45,7 @@ SIZE = WIDTH * len(NAMES)
 
 
 class Place(NamedTuple):
-    """Where a tile stands: its first cell (of arrays with two ghosts at each end), their number, and at which end it is."""
+    """Where a tile stands: its first cell (in arrays with two ghosts at each end), their number, at which end it is."""
 
     begin: int
     n: int

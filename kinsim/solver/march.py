@@ -77,7 +77,8 @@ class Asked(NamedTuple):
     """What is asked of a march.
 
     `dt` is the length of steps, or `number` the Courant number, with `falling` the speed of a grain that starts to
-    slide and `shortest` the least step worth taking; `limit` the largest Courant number; `room` the largest sums;
+    slide and `shortest` the least step worth taking; `limit` the largest Courant number; `room` the largest sums,
+    infinite where all is taken;
     `bound` the velocity window, at which it `stops`; `pull` the largest acceleration, `tight` the speed from which the
     force may push f over the edge; a momentum up to `still` + `still_per_h` max h is rest, which `stop_at_rest` ends;
     `until` a time to land on; `past` a time after which to come back; `lifts` is 1 if lifting cells are counted, 2 if
@@ -358,7 +359,7 @@ def march(
         if reason == COUNTED and reach > asked.bound * (1.0 + ROUNDING):
             seen[BEYOND] = max(seen[BEYOND], reach)
             reason = OUTSIDE if asked.stops > 0.0 else COUNTED
-        if reason == COUNTED and not counts(kept, asked.room, nx, seen, dt):
+        if reason == COUNTED and asked.room < math.inf and not counts(kept, asked.room, nx, seen, dt):
             reason = NOT_FINITE
         if reason != COUNTED:
             seen[TICKS], seen[LEFT_OVER] = tick, left_over
