@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[1]
 CHANGES, CITATION, CONTRIBUTING = (
     (ROOT / name).read_text(encoding="utf-8") for name in ("CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md")
 )
-GUIDES = ("contributing.md", "how-to/add-a-room.md")
+GUIDES = ("contributing.md", "how-to/add-a-part.md")
 
 
 def test_they_name_this_version():

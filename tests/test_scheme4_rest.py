@@ -124,7 +124,7 @@ def test_closed_masses_stop(method: Macroscopic | Kinetic, zeta: float, film: fl
 @IN_CLOSED_FORM
 @pytest.mark.parametrize("number", [None, 0.9])
 def test_a_strong_wave_has_no_ripples(method: Macroscopic, number: float | None) -> None:
-    """`riemann`: the total variation of h exceeds that of the exact solution, 0.5, by at most 1e-3; in order 2 by 2e-3, with mc by 1e-2."""
+    """`riemann`: total variation of h less that of the exact solution, 0.5: at most 1e-3, in order 2 2e-3, mc 1e-2."""
     scene, paper = SCENES["riemann"]
     end = simulate(scene, method, paper if number is None else Courant(number, 5.0), 10**6).h[-1]
     assert np.abs(np.diff(end)).sum() - 0.5 <= (1e-2 if method.limiter == "mc" else 1e-3 * method.order)
