@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import hashlib
 import importlib
+import inspect
 import os
 import pickle
 import shutil
@@ -228,18 +229,35 @@ class Apart:
         names: dict[str, Any] = {"stage": function, "Place": place, "carray": numba.carray, "pointer": pointer}
         given = "".join(f"{self._written(value, names)}, " for value in values)
         self._table = np.array(self._numbers or [0.0])
-        places = [(array.ctypes.data, array.shape[0], array.shape[-1]) for array in self._arrays]
-        self._places = np.array(places or [(0, 0, 0)], dtype=np.int64).reshape(-1)
+        self._places = np.array(self._addresses() or [0], dtype=np.int64)
+        self._function, self._place = function, place
         if config.DISABLE_JIT:
             self.address = len(_interpreted)
-            _interpreted.append(
-                lambda dt, begin, n, first, last, room: function(
-                    *values, dt, place(begin, n, bool(first), bool(last)), room
-                )
-            )
+            _interpreted.append(lambda *given: 0.0)
+            self._interpret(values)
         else:
             self.address = self._compiled(function, given, names, tuple(_classes_of(values)))
         self.row = (self.address, self._table.ctypes.data, self._places.ctypes.data)
+
+    def point_at(self, values: tuple[Any, ...]) -> None:
+        """Take other values of the same classes."""
+        self._numbers, self._arrays = [], []
+        for value in values:
+            self._written(value, {})
+        self._table[: len(self._numbers)] = self._numbers
+        self._places[: 3 * len(self._arrays)] = self._addresses()
+        if config.DISABLE_JIT:
+            self._interpret(values)
+
+    def _addresses(self) -> list[int]:
+        """Where the arrays stand, and their shapes."""
+        return [int(x) for array in self._arrays for x in (array.ctypes.data, array.shape[0], array.shape[-1])]
+
+    def _interpret(self, values: tuple[Any, ...]) -> None:
+        function, place = self._function, self._place
+        _interpreted[self.address] = lambda dt, begin, n, first, last, room: function(
+            *values, dt, place(begin, n, bool(first), bool(last)), room
+        )
 
     def _written(self, value: Any, names: dict[str, Any]) -> str:
         """The expression that makes a value of the tables."""
@@ -247,7 +265,7 @@ class Apart:
             inner = "".join(f"{self._written(part, names)}, " for part in value)
             name = type(value).__name__ if hasattr(value, "_fields") else ""
             if name:
-                name = f"{name}_{len(names)}"
+                name = f"made_{len(names)}"
                 names[name] = type(value)
             return f"{name}({inner})" if name else f"({inner})"
         if isinstance(value, np.ndarray):
@@ -401,6 +419,26 @@ def _source_of(module: str) -> str | None:
         return None
 
 
+def _frozen_in(cls: type) -> str:
+    """The global values that formulas of a class from outside read, which their code freezes."""
+    if cls.__module__.startswith("kinsim."):
+        return ""
+    read: dict[str, str] = {}
+    for formula in [cls, *vars(cls).values()]:
+        if inspect.isfunction(formula):
+            found = inspect.getclosurevars(formula)
+            read |= {name: _told(value) for name, value in {**found.globals, **found.nonlocals}.items()}
+    return repr(sorted(read.items()))
+
+
+def _told(value: Any) -> str:
+    """A value that a formula reads; a function or class by its source."""
+    try:
+        return inspect.getsource(getattr(value, "py_func", value))
+    except (OSError, TypeError):
+        return repr(value)
+
+
 def _classes_in(kind: Any) -> Iterator[type]:
     """The classes of values in a numba type."""
     if isinstance(kind, types.BaseNamedTuple):
@@ -459,9 +497,9 @@ class _Cache:
         for cls in sorted({c for kind in signature for c in _classes_in(kind)} | set(self._classes), key=repr):
             made_of = getattr(cls, "made_of", cls)
             source = _source_of(made_of.__module__)
-            if source is None or "<locals>" in made_of.__qualname__:
+            if source is None or "<" in made_of.__qualname__:
                 return None
-            told.append((made_of.__module__, made_of.__qualname__, source))
+            told.append((made_of.__module__, made_of.__qualname__, source, _frozen_in(made_of)))
         if folder is None:
             return None
         key = repr((self._told, str(signature), told, target.codegen().magic_tuple(), sys.version_info[:2]))

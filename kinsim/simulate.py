@@ -159,13 +159,16 @@ class Simulation:
 
     def run(self, progress: Progress | None = None) -> Run:
         """Go on to the end, or until somebody stops it."""
-        with Deferred() as interrupt:
-            while self.verdict is None and not interrupt.asked:
-                self.advance()
-                if self.keeper and self.verdict is None:
-                    self.keeper.look(self.kept)
-                if progress:
-                    progress(min(self.solver.t / self.clock.end, 1.0) if self.clock.end else 1.0)
+        try:
+            with Deferred() as interrupt:
+                while self.verdict is None and not interrupt.asked:
+                    self.advance()
+                    if self.keeper and self.verdict is None:
+                        self.keeper.look(self.kept)
+                    if progress:
+                        progress(min(self.solver.t / self.clock.end, 1.0) if self.clock.end else 1.0)
+        except KeyboardInterrupt:
+            pass
         if self.verdict is None:
             self.verdict = verdict("interrupted", "interrupted", self.solver, self.history.ledger)
             if self.keeper:
@@ -192,6 +195,9 @@ class Simulation:
                 continue  # the block ended here for somebody else
             try:
                 said = observer.look(block)
+            except InputError as error:
+                self.verdict = verdict("refused", f"{error}; stopped", self.solver, self.history.ledger)
+                continue
             except Exception as error:  # of somebody's own; the run keeps what it has
                 if observer not in self.own:
                     raise

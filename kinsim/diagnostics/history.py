@@ -114,6 +114,9 @@ class History(Observer):
     def look(self, block: Block) -> str | None:
         self.ledger.note(block)
         if self._is_due(block) or block.last:
+            more = len(self.states)
+            if more > self._foreseen and more & (more - 1) == 0:  # twice as many may come before the next look
+                require_history(more, block.step, block.h.size, f"{more} rows more")
             self.save(block)
         return None
 
@@ -129,9 +132,6 @@ class History(Observer):
         """Keep the state after a block."""
         if self.times[-1] == block.t:
             return
-        more = len(self.states)
-        if more > self._foreseen and more & (more - 1) == 0:  # twice as many may come before the next look
-            require_history(more, block.step, block.h.size, f"{more} rows more")
         self.ledger.save(block)
         self._save(block.t, block.h, block.q)
 

@@ -13,6 +13,7 @@ import numpy as np
 from ..arrays import Array
 from ..kernel import formula, kernel, question, routine
 from ..method import ForceName
+from .equilibrium.questions import both_sides
 
 
 class ShiftLinear(NamedTuple):
@@ -60,6 +61,9 @@ class DerivativeUpwind(NamedTuple):
     def acts_before(force):
         return True
 
+    def lay_equilibrium(force, flux, beta, h, u, work, padded):
+        lay(flux, beta, h, u, work, padded)
+
 
 class DerivativeCentred(NamedTuple):
     """Derivative (18) of M^n by the centred difference; for study."""
@@ -72,6 +76,9 @@ class DerivativeCentred(NamedTuple):
 
     def acts_before(force):
         return True
+
+    def lay_equilibrium(force, flux, beta, h, u, work, padded):
+        lay(flux, beta, h, u, work, padded)
 
 
 class After(NamedTuple):
@@ -92,6 +99,20 @@ class Unforced(NamedTuple):
         for j in range(f.shape[1]):
             f[i, j] = row[j + 2]
         return 0.0, 0.0
+
+
+@question
+def lay_equilibrium(force: Any, flux: Any, beta: float, h: float, u: float, work: Array, padded: Array) -> None:
+    """Put M^n into the second padded row, if the force acts on it."""
+
+
+@routine()
+def lay(flux: Any, beta: float, h: float, u: float, work: Array, padded: Array) -> None:
+    """M(h, xi - u) as an ascending row."""
+    both_sides(flux.equilibrium, h, u, beta, flux.dxi, work[0], work[1])
+    half = work.shape[1]
+    for j in range(half):
+        padded[1, half + 2 + j], padded[1, half + 1 - j] = work[0, j], work[1, j]
 
 
 @question

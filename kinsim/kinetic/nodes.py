@@ -13,6 +13,10 @@ from ..schemes.tile import N1, N2, P1, P2, H, U
 from .equilibrium import both_sides, is_sampled, one_side, reports, wider
 
 
+ROUNDED = 1.0 - 1e-15
+"""Keeps what leaves below what is there, rounding included."""
+
+
 class Nodes(NamedTuple):
     """Sums over the nodes +-(k + 1/2) dxi, k below n/2, of an equilibrium.
 
@@ -58,6 +62,9 @@ class Nodes(NamedTuple):
 
     def limits_outflow(flux):
         return True
+
+    def extent(flux, low, high):
+        return -outermost(flux, -low), outermost(flux, high)
 
 
 class Spread(NamedTuple):
@@ -129,7 +136,7 @@ def cap(w1, w2, M, begin, end, lam, dxi, side):
     """lam xi G <= M, and what that takes of mass and momentum given back as (al + ga e) z (M - z), z = lam xi G."""
     lost1, lost2 = 0.0, 0.0
     for k in range(begin, end):
-        least = min(side[k], M[k] / (lam * (k + 0.5) * dxi))
+        least = min(side[k], ROUNDED * M[k] / (lam * (k + 0.5) * dxi))
         lost1 += w1[k] * (side[k] - least)
         lost2 += w2[k] * (side[k] - least)
         side[k] = least
@@ -149,5 +156,6 @@ def cap(w1, w2, M, begin, end, lam, dxi, side):
     share = min(1.0, 1.0 / max(top * ends, 1e-300))
     for k in range(begin, end):
         z = lam * (k + 0.5) * dxi * side[k]
-        side[k] += share * (al + ga * w2[k] / w1[k]) * side[k] * (M[k] - z)
+        most = ROUNDED * M[k] / (lam * (k + 0.5) * dxi)
+        side[k] = min(side[k] + share * (al + ga * w2[k] / w1[k]) * side[k] * (M[k] - z), most)
     return begin, end

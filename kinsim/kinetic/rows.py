@@ -6,12 +6,13 @@ what is written is what somebody asked for.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..kernel import generic, routine
+from ..kernel import Apart, generic, kernel, perform, question, routine
 from ..schemes.bed import beta_of
 from ..schemes.questions import (
     acts_before,
@@ -23,7 +24,7 @@ from ..schemes.questions import (
 )  # fmt: skip
 from ..schemes.tile import H1, Q1, QHAT, TILE, H, J, Model, Place, U
 from .equilibrium.questions import both_sides
-from .force import push
+from .force import lay_equilibrium, push
 from .nodes import leaving
 
 CHUNK = 32
@@ -31,16 +32,18 @@ CHUNK = 32
 
 
 @routine()
-def cell_rows(model: Model, place: Place, k: int, room: Array, rows: Array, r: int) -> None:
+def cell_rows(flux: Any, bed: Any, place: Place, k: int, room: Array, rows: Array, r: int) -> None:
     """M of cell k on both sides of xi = 0, into the rows r and r + 1."""
-    beta = beta_of(model.ground.bed, place.begin + k)
-    both_sides(model.flux.equilibrium, room[H + k], room[U + k], beta, model.flux.dxi, rows[r], rows[r + 1])
+    beta = beta_of(bed, place.begin + k)
+    both_sides(flux.equilibrium, room[H + k], room[U + k], beta, flux.dxi, rows[r], rows[r + 1])
 
 
 @routine()
-def face_rows(model: Model, place: Place, k: int, lam: float, room: Array, rows: Array, r: int) -> None:
+def face_rows(
+    scheme: Any, order: Any, flux: Any, bed: Any, place: Place, k: int, lam: float, room: Array, rows: Array, r: int
+) -> None:
     """The density that stands at face k itself: of its left state for xi > 0, of its right one for xi < 0."""
-    flux, scheme, order, bed, i = model.flux, model.scheme, model.order, model.ground.bed, place.begin + k
+    i = place.begin + k
     h, u, g, v = own_states(scheme, order, k, room)
     by = beta_shown(order, bed, i, i)
     leaving(flux, scheme, order, h, u, by, room[H + k], room[U + k], beta_of(bed, i), lam, rows[r])
@@ -51,26 +54,24 @@ def face_rows(model: Model, place: Place, k: int, lam: float, room: Array, rows:
 
 @routine()
 def transport_rows(
-    model: Model, place: Place, dt: float, first: int, last: int, room: Array, work: Array, xi: Array, T: Array,
-    M: Array, B: Array, into: int,
+    scheme: Any, order: Any, flux: Any, bed: Any, lam: float, place: Place, first: int, last: int, room: Array,
+    work: Array, xi: Array, T: Array, M: Array, B: Array, into: int,
 ) -> None:  # fmt: skip
     """f_i = M_i - lam xi (M_{i+1/2} - M_{i-1/2}), (23) before the shift, of the cells `first` to below `last`.
 
     T gets one row for each, from the row `into` on, and so do M and B (of the face right of the cell) if they are
     wanted. The density at a face is upwind, (19), or one of its own.
     """
-    lam = dt / model.ground.dx
-    scheme, order = model.scheme, model.order
     before, here, after, at_left, at_right = 0, 2, 4, 6, 8
-    cell_rows(model, place, first - 1, room, work, before)
-    cell_rows(model, place, first, room, work, here)
+    cell_rows(flux, bed, place, first - 1, room, work, before)
+    cell_rows(flux, bed, place, first, room, work, here)
     if has_own_density(scheme, order, first - 1, room):
-        face_rows(model, place, first - 1, lam, room, work, at_left)
+        face_rows(scheme, order, flux, bed, place, first - 1, lam, room, work, at_left)
     for k in range(first, last):
-        cell_rows(model, place, k + 1, room, work, after)
+        cell_rows(flux, bed, place, k + 1, room, work, after)
         own = has_own_density(scheme, order, k, room)
         if own:
-            face_rows(model, place, k, lam, room, work, at_right)
+            face_rows(scheme, order, flux, bed, place, k, lam, room, work, at_right)
         own_left, own_right = takes_own(scheme, order, k, 0, room), takes_own(scheme, order, k, 1, room)
         leaves_right, leaves_left = at_right if own_right else here, (at_left if own_left else here) + 1
         comes_left, comes_right = at_left if own_left else before, (at_right if own_right else after) + 1
@@ -116,51 +117,136 @@ def put_sides(work: Array, p: int, n: int, out: Array, row: int) -> None:
         out[row, half - 1 - k] = work[n, k]
 
 
+@question
+def beta_at(bed: Any, i: int) -> float:
+    """beta of cell i, 0 where nobody needs it."""
+    return beta_of(bed, i)
+
+
 @routine()
 def push_rows(
-    model: Model, place: Place, first: int, last: int, room: Array, work: Array, padded: Array, T: Array, at: int,
-    f: Array, offset: Array, into: int,
+    force: Any, flux: Any, bed: Any, place: Place, first: int, last: int, room: Array, work: Array, padded: Array,
+    T: Array, at: int, f: Array, offset: Array, into: int,
 ) -> float:  # fmt: skip
     """Hand J over to the rows T of the cells `first` to below `last`; returns the mass that leaves, per dx."""
-    force, dxi, n, gone = model.force, model.flux.dxi, T.shape[1], 0.0
+    n, gone = T.shape[1], 0.0
     for k in range(first, last):
         for j in range(n):
             padded[0, j + 2] = T[at + k - first, j]
         height = room[H1 + k]
         if acts_before(force):
             height = room[H + k]
-            cell_rows(model, place, k, room, work, 0)
-            for j in range(n // 2):
-                padded[1, n // 2 + 2 + j], padded[1, n // 2 + 1 - j] = work[0, j], work[1, j]
+            lay_equilibrium(force, flux, beta_at(bed, place.begin + k), height, room[U + k], work, padded)
         row = into + k - first
-        offset[row], lost = push(force, padded[0], padded[1], room[J + k], height, dxi, f, row)
+        offset[row], lost = push(force, padded[0], padded[1], room[J + k], height, flux.dxi, f, row)
         gone += lost
     return gone
 
 
-@generic
-def density(
-    model: Model, dt: float, rooms: Array, nx: int, xi: Array, T: Array, f: Array, M: Array, B: Array, offset: Array
-) -> float:
-    """f after the force of a step whose stages stand in `rooms`, into `f`, shape (nx, n); `xi`, (n/2,), are nodes > 0.
+class Wanted(NamedTuple):
+    """What a sweep over the cells makes, and rows to work in.
 
-    T (f after transport), M and B (face i + 1 at row i) are written too where they have rows. `offset` gets how far the
-    force moved the nodes. Returns the mass that left the window, per dx.
+    `span` is the first cell of a chunk, one past the last, and the rows of `T` and of `f` for the first; `f` is f after
+    the force, `T` after transport, `M` and `B` the equilibrium and the density at right faces, all of shape (nx, n) or
+    without rows if nobody wants them, but that `T` then is room for a chunk; `offset` is how far nodes moved.
     """
-    half, gone = xi.size, 0.0
-    work, padded, few = np.zeros((10, half)), np.zeros((2, 2 * half + 4)), np.zeros((CHUNK, 2 * half))
+
+    span: Array
+    xi: Array
+    work: Array
+    padded: Array
+    T: Array
+    f: Array
+    M: Array
+    B: Array
+    offset: Array
+
+
+@routine()
+def transported(
+    scheme: Any, order: Any, flux: Any, bed: Any, dx: float, wanted: Wanted, dt: float, place: Place, room: Array
+) -> float:
+    """f after transport, of a chunk."""
+    first, last, into = int(wanted.span[0]), int(wanted.span[1]), int(wanted.span[2])
+    rows = wanted.work, wanted.xi, wanted.T, wanted.M, wanted.B
+    transport_rows(scheme, order, flux, bed, dt / dx, place, first, last, room, *rows, into)
+    return 0.0
+
+
+@routine()
+def pushed(force: Any, flux: Any, bed: Any, wanted: Wanted, dt: float, place: Place, room: Array) -> float:
+    """f after the force, of a chunk; returns the mass that left the window, per dx."""
+    first, last, at, into = int(wanted.span[0]), int(wanted.span[1]), int(wanted.span[2]), int(wanted.span[3])
+    work, padded = wanted.work, wanted.padded
+    return push_rows(
+        force, flux, bed, place, first, last, room, work, padded, wanted.T, at, wanted.f, wanted.offset, into
+    )
+
+
+@kernel
+def carry(parts: NDArray[np.int64], dt: float, rooms: Array, nx: int, span: Array, stored: bool, push: bool) -> float:
+    """The density of all cells of a step whose stages stand in `rooms`; returns the mass that left the window, per dx.
+
+    `stored` says that T is kept for all cells, `push` that f is wanted.
+    """
+    gone = 0.0
     for tile in range(rooms.shape[0]):
         begin = tile * TILE
-        place = Place(2 + begin, min(TILE, nx - begin), tile == 0, tile == rooms.shape[0] - 1)
-        for first in range(0, place.n, CHUNK):
-            last, into = min(first + CHUNK, place.n), begin + first
-            if T.shape[0] > 0:
-                transport_rows(model, place, dt, first, last, rooms[tile], work, xi, T, M, B, into)
-                gone += push_rows(model, place, first, last, rooms[tile], work, padded, T, into, f, offset, into)
-            else:
-                transport_rows(model, place, dt, first, last, rooms[tile], work, xi, few, M, B, 0)
-                gone += push_rows(model, place, first, last, rooms[tile], work, padded, few, 0, f, offset, into)
+        n, at_left, at_right = min(TILE, nx - begin), tile == 0, tile == rooms.shape[0] - 1
+        for first in range(0, n, CHUNK):
+            span[0], span[1] = first, min(first + CHUNK, n)
+            span[2], span[3] = begin + first if stored else 0, begin + first
+            perform(parts, 0, dt, 2 + begin, n, at_left, at_right, rooms[tile])
+            if push:
+                gone += perform(parts, 1, dt, 2 + begin, n, at_left, at_right, rooms[tile])
     return gone
+
+
+def wanted_of(nx: int, xi: Array, *names: str) -> Wanted:
+    """New arrays for what is asked for, by the names T, f, M and B."""
+    half = xi.size
+    none = np.zeros((0, 2 * half))
+    made = {name: np.zeros((nx, 2 * half)) if name in names else none for name in ("f", "M", "B")}
+    T = np.zeros((nx if "T" in names else CHUNK, 2 * half))
+    work, padded = np.zeros((10, half)), np.zeros((2, 2 * half + 4))
+    return Wanted(np.zeros(4), xi, work, padded, T, made["f"], made["M"], made["B"], np.zeros(nx))
+
+
+class Carrier:
+    """Makes the density of steps of one model, whose parts are compiled apart."""
+
+    def __init__(self, model: Model, nx: int, xi: Array) -> None:
+        self._model, self._nx, self._xi = model, nx, xi
+        self._made: tuple[Apart, Apart] | None = None
+
+    def __call__(self, dt: float, rooms: Array, *names: str) -> tuple[Wanted, float]:
+        """What is asked for, by the names T, f, M and B, and the mass that left the window, per dx."""
+        scheme, order, flux, force, _, ground = self._model
+        wanted = wanted_of(self._nx, self._xi, *names)
+        values = (scheme, order, flux, ground.bed, ground.dx, wanted)
+        source = flux if acts_before(force) else Width(flux.dxi)
+        bed = ground.bed if acts_before(force) else Level()
+        if self._made is None:
+            self._made = Apart(transported, values, Place), Apart(pushed, (force, source, bed, wanted), Place)
+        else:
+            self._made[0].point_at(values)
+            self._made[1].point_at((force, source, bed, wanted))
+        parts = np.array([part.row for part in self._made], dtype=np.int64)
+        lost = carry(parts, dt, rooms, self._nx, wanted.span, "T" in names, "f" in names)
+        return wanted, float(lost)
+
+
+class Width(NamedTuple):
+    """Of velocity cells, all that a shift asks of a flux."""
+
+    dxi: float
+
+
+class Level(NamedTuple):
+    """Of a bed, all that a shift asks: nothing."""
+
+    def beta_at(bed, i):
+        return 0.0
 
 
 @generic
@@ -171,7 +257,8 @@ def push_transported(model: Model, rooms: Array, nx: int, T: Array, f: Array, of
     for tile in range(rooms.shape[0]):
         at = tile * TILE
         place = Place(2 + at, min(TILE, nx - at), tile == 0, tile == rooms.shape[0] - 1)
-        push_rows(model, place, 0, place.n, rooms[tile], work, padded, T, at, f, offset, at)
+        bed, room = model.ground.bed, rooms[tile]
+        push_rows(model.force, model.flux, bed, place, 0, place.n, room, work, padded, T, at, f, offset, at)
 
 
 def push_all(model: Model, rooms: Array, T: Array) -> tuple[Array, Array]:
@@ -201,25 +288,27 @@ class Resummed(NamedTuple):
 
 
 @routine()
-def sum_transported(model: Model, dt: float, place: Place, room: Array) -> float:
+def sum_transported(
+    scheme: Any, order: Any, flux: Any, bed: Any, dx: float, own: Resummed, dt: float, place: Place, room: Array
+) -> float:
     """Sum h^{n+1} and qhat anew after transport; returns the mass this makes, per dx."""
-    own, none = model.projection, model.projection.T[:0]
-    at, made = place.begin - 2, 0.0
-    transport_rows(model, place, dt, 0, place.n, room, own.work, own.xi, own.T, none, none, at)
+    none, at, made = own.T[:0], place.begin - 2, 0.0
+    rows = own.work, own.xi, own.T, none, none
+    transport_rows(scheme, order, flux, bed, dt / dx, place, 0, place.n, room, *rows, at)
     for k in range(place.n):
-        m0, m1 = sum_row(own.T, at + k, own.xi, model.flux.dxi)
+        m0, m1 = sum_row(own.T, at + k, own.xi, flux.dxi)
         made += m0 - room[H1 + k]
         room[H1 + k], room[QHAT + k] = m0, m1
     return made
 
 
 @routine()
-def sum_forced(model: Model, dt: float, place: Place, room: Array) -> float:
+def sum_forced(force: Any, flux: Any, bed: Any, own: Resummed, dt: float, place: Place, room: Array) -> float:
     """Sum h^{n+1} and q^{n+1} anew after the force; returns the mass this makes, per dx."""
-    own, at, made = model.projection, place.begin - 2, 0.0
-    push_rows(model, place, 0, place.n, room, own.work, own.padded, own.T, at, own.f, own.offset, at)
+    at, made = place.begin - 2, 0.0
+    push_rows(force, flux, bed, place, 0, place.n, room, own.work, own.padded, own.T, at, own.f, own.offset, at)
     for k in range(place.n):
-        m0, m1 = sum_row(own.f, at + k, own.xi, model.flux.dxi)
+        m0, m1 = sum_row(own.f, at + k, own.xi, flux.dxi)
         made += m0 - room[H1 + k]
         room[H1 + k], room[Q1 + k] = m0, m1 + own.offset[at + k] * m0
     return made
@@ -234,6 +323,3 @@ def sum_row(f: Array, i: int, xi: Array, dxi: float) -> tuple[float, float]:
         m0 += p + n
         m1 += (p - n) * xi[k]
     return m0 * dxi, m1 * dxi
-
-
-__all__ = ["FluxDifference", "Resummed", "cell_rows", "density", "face_rows", "push_all"]

@@ -93,7 +93,7 @@ def law_of(friction: Any) -> Any:
     Raises:
         InputError: It has no formula `resistance`, or a number of it is none.
     """
-    friction = getattr(friction, "law", friction)
+    friction = friction if hasattr(friction, "resistance") else getattr(friction, "law", friction)
     if isinstance(friction, tuple) and hasattr(friction, "_fields"):
         cls, numbers = type(friction), tuple(friction)
     elif is_dataclass(friction):

@@ -22,7 +22,7 @@ ROUNDING = 1e-13
 
 
 class Reflecting(NamedTuple):
-    """Scheme 4 with faces that reflect; first order."""
+    """Faces that friction can hold turn particles round; conservative in mass, positive, rests; first order."""
 
     def judge(scheme, ground, dt, place, room):
         n, dx = place.n, ground.dx

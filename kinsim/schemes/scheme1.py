@@ -12,7 +12,7 @@ from .tile import F1, F2, H1, QHAT, H, J, U
 
 
 class Upwind(NamedTuple):
-    """Scheme 1."""
+    """Upwind faces (19) and sliding friction; never rests."""
 
     def fluxes(scheme, order, flux, ground, dt, place, room):
         flux_of_cells(flux, ground.bed, place, -1, place.n, F1, F2, room)

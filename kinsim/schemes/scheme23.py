@@ -20,7 +20,7 @@ def balanced_at(scheme, slow_here: float, slow_there: float) -> bool:
 
 
 class Balanced(NamedTuple):
-    """Scheme 2: balanced faces everywhere."""
+    """Balanced faces (25) everywhere; slow cells stop and start, (21), (22)."""
 
     def fluxes(scheme, order, flux, ground, dt, place, room):
         n, bed, lam = place.n, ground.bed, dt / ground.dx
@@ -85,7 +85,7 @@ class Balanced(NamedTuple):
 
 
 class CoupledByCell(NamedTuple):
-    """Scheme 3 by cell, the paper's: slow cells take balanced fluxes, the others upwind ones; not conservative."""
+    """By cell, the paper's: slow cells take balanced fluxes, the others upwind ones; not conservative."""
 
     fluxes = Balanced.fluxes
     has_two_fluxes = Balanced.has_two_fluxes
@@ -99,7 +99,7 @@ class CoupledByCell(NamedTuple):
 
 
 class CoupledByFace(NamedTuple):
-    """Scheme 3 by face: one flux per face, balanced where both its cells are slow; conservative."""
+    """By face: one flux per face, balanced where both its cells are slow; conservative."""
 
     fluxes = Balanced.fluxes
     has_two_fluxes = Balanced.has_two_fluxes

@@ -68,7 +68,7 @@ from .tile import (
 
 
 class Held(NamedTuple):
-    """Scheme 4 with faces that hold."""
+    """Faces hold back what friction can balance, cells are stopped by a clamp; conservative, positive, rests."""
 
     def judge(scheme, ground, dt, place, room):
         n, bed, law, dx, begin = place.n, ground.bed, ground.law, ground.dx, place.begin

@@ -13,7 +13,7 @@ from ..kinetic.equilibrium import Status, fill
 from ..kinetic.equilibrium.averages import mass_outside
 from ..kinetic.equilibrium.questions import reports
 from ..kinetic.force import moves_nodes
-from ..kinetic.rows import Resummed, cell_rows, density, face_rows, push_all
+from ..kinetic.rows import Carrier, Resummed, cell_rows, face_rows, push_all
 from ..kinetic.velocity import Grid, Uniform, Window
 from ..method import Kinetic
 from ..schemes.questions import comes_back, has_own_density
@@ -43,6 +43,9 @@ class Density:
         self.grid = grid or self._own_grid()
         if self.grid != solver.grid:
             self._model = model_of(solver.scene, method, self.grid)
+            self._carrier = Carrier(self._model, solver.scene.cells.count, self.grid.side)
+        else:
+            self._carrier = solver.carrier
         self.xi = self.grid.xi
 
     def _own_grid(self) -> Grid:
@@ -57,28 +60,24 @@ class Density:
         """The fastest particle of all states of the step; past the edge of the window, M is cut."""
         return float(self._stages.solver.seen[REACH])
 
+    def _carried(self, *names: str) -> dict[str, Any]:
+        wanted, lost = self._carrier(self._stages.dt, self._stages.rooms, *names)
+        return {**wanted._asdict(), "lost": lost}
+
     @cached_property
     def _made(self) -> dict[str, Any]:
-        nx, n = self._scene.cells.count, self.grid.count
-        arrays = {name: np.zeros((nx, n)) for name in ("T", "f", "M", "B")}
-        offset = np.zeros(nx)
-        lost = density(self._model, self._stages.dt, self._stages.rooms, nx, self.grid.side, *arrays.values(), offset)
+        made = self._carried("T", "f", "M", "B")
         if isinstance(self._model.projection, Resummed):
             own = self._model.projection
-            arrays["T"], arrays["f"], offset = own.T, own.f, own.offset
-        return {**arrays, "offset": offset, "lost": lost}
+            made |= {"T": own.T, "f": own.f, "offset": own.offset}
+        return made
 
     @cached_property
     def _forced(self) -> dict[str, Any]:
         """f alone, in one sweep."""
         if "_made" in self.__dict__ or isinstance(self._model.projection, Resummed):
             return self._made
-        nx, n = self._scene.cells.count, self.grid.count
-        f, none, offset = np.zeros((nx, n)), np.zeros((0, n)), np.zeros(nx)
-        lost = density(
-            self._model, self._stages.dt, self._stages.rooms, nx, self.grid.side, none, f, none, none, offset
-        )
-        return {"f": f, "offset": offset, "lost": lost}
+        return self._carried("f")
 
     @property
     def M(self) -> Array:
@@ -172,13 +171,13 @@ class Density:
         model, sides = self._model, np.zeros((4, self.grid.half))
         lam, inner = self._stages.dt / model.ground.dx, k + 1 if place.first and k < 0 else k
         if comes_back(model.scheme, k, room):
-            cell_rows(model, place, inner, room, sides, 0)
+            cell_rows(model.flux, model.ground.bed, place, inner, room, sides, 0)
             mine = sides[1] if inner > k else sides[0]
             return np.concatenate([mine[::-1], mine])
         if has_own_density(model.scheme, model.order, k, room):
-            face_rows(model, place, k, lam, room, sides, 0)
+            face_rows(model.scheme, model.order, model.flux, model.ground.bed, place, k, lam, room, sides, 0)
         else:
-            cell_rows(model, place, k, room, sides, 0)
-            cell_rows(model, place, k + 1, room, sides, 2)
+            cell_rows(model.flux, model.ground.bed, place, k, room, sides, 0)
+            cell_rows(model.flux, model.ground.bed, place, k + 1, room, sides, 2)
             sides[1] = sides[3]
         return np.concatenate([sides[1][::-1], sides[0]])

@@ -12,15 +12,17 @@ from ..arrays import Array
 from ..kernel import formula, greatest, kernel, perform, routine
 from ..schemes.bed import beta_of
 from ..schemes.formulas import updated
-from ..schemes.questions import face_states, fluxes, is_sloped, judge, settle, show
+from ..schemes.questions import extent, face_states, fluxes, is_sloped, judge, limits_outflow, settle, show
 from ..schemes.tile import (
     F1,
     F2,
     G1,
     G2,
     H1,
+    HIGH,
     HM,
     HP,
+    LOW,
     MOVED,
     OPEN,
     Q1,
@@ -36,6 +38,7 @@ from ..schemes.tile import (
     J,
     Place,
     Q,
+    U,
     all_dry,
     load,
 )  # fmt: skip
@@ -212,6 +215,12 @@ def met(scheme: Any, order: Any, ground: Any, dt: float, place: Place, room: Arr
 def sent(scheme: Any, order: Any, flux: Any, ground: Any, dt: float, place: Place, room: Array) -> float:
     """Write the fluxes; returns the fastest particle of states made at faces, and of what cells show."""
     top = fluxes(scheme, order, flux, ground, dt, place, room)
+    if limits_outflow(flux):
+        for k in range(-1, place.n + 1):
+            c = math.sqrt(2.0 * beta_of(ground.bed, place.begin + k) * room[H + k])
+            room[LOW + k], room[HIGH + k] = extent(flux, room[U + k] - c, room[U + k] + c)
+            if room[H + k] == 0.0:
+                room[LOW + k], room[HIGH + k] = math.inf, -math.inf
     if is_sloped(order):
         for k in range(place.n):
             c = math.sqrt(2.0 * beta_of(ground.bed, place.begin + k) * max(room[HP + k], room[HM + k]))
@@ -339,8 +348,7 @@ def march(
             reason = TOO_SHORT
         elif not courant <= asked.limit or not courant < math.inf:
             reason = COURANT
-        elif not whole and max(fast, streams) + dt * asked.pull > asked.tight:
-            reason = TIGHT
+        may_leave, leaves = not whole and max(fast, streams) + dt * asked.pull > asked.tight, False
         before, reach, still = 1.0, max(fast, streams), True
         for tile in range(tiles if reason == COUNTED else 0):
             now_moved = kept[tile, MOVED_RIGHT]
@@ -354,11 +362,15 @@ def march(
                 place = Place(begin, min(TILE, nx + 2 - begin), first, last)
                 sweep(shape, parts, place, h, q, dt, h1, q1, whole, rooms[tile if whole else 0], kept[tile])
                 seen[SWEPT] += 0.0 if kept[tile, RESTS] > 0.0 else place.n
+                if may_leave and (kept[tile, RESTS] == 0.0 or shape.summed > 0.0):
+                    leaves = leaves or leave_window(shape, place.n, rooms[0])
             reach, still = max(reach, kept[tile, FACES]), still & (kept[tile, CHANGE] == 0.0)
         seen[REACH] = max(seen[REACH], reach)
         if reason == COUNTED and reach > asked.bound * (1.0 + ROUNDING):
             seen[BEYOND] = max(seen[BEYOND], reach)
             reason = OUTSIDE if asked.stops > 0.0 else COUNTED
+        if reason == COUNTED and leaves:
+            reason = TIGHT
         if reason == COUNTED and asked.room < math.inf and not counts(kept, asked.room, nx, seen, dt):
             reason = NOT_FINITE
         if reason != COUNTED:
@@ -379,6 +391,24 @@ def march(
         if lands or after >= asked.past:
             return steps + 1, REACHED
     return most, COUNTED
+
+
+@routine()
+def leave_window(shape: Shape, n: int, room: Array) -> bool:
+    """Whether the force may push some of f over the edge of the velocity window.
+
+    f of a cell stands where its cell and the two neighbours stood, and is moved by the force.
+    """
+    half, leaves = shape.outermost / shape.dxi + 0.5, 0
+    for k in range(n):
+        slowest = min(room[LOW + k], min(room[LOW + k - 1], room[LOW + k + 1]))
+        quickest = max(room[HIGH + k], max(room[HIGH + k - 1], room[HIGH + k + 1]))
+        first, last = math.floor(slowest / shape.dxi) + half, math.floor(quickest / shape.dxi) + half
+        way = room[J + k] / room[H1 + k] / shape.dxi if room[H1 + k] > 0.0 else 0.0
+        over = last + (math.floor(way) + 1.0 if way > 0.0 else 0.0) >= 2.0 * half
+        under = first - (math.floor(-way) + 1.0 if way < 0.0 else 0.0) < 0.0
+        leaves += 1 if over or under else 0
+    return leaves > 0
 
 
 @routine()

@@ -151,9 +151,9 @@ def parts_of(model: Model) -> list[Apart]:
         part(shown, order, ground) if sloped else none,
         part(met, scheme, order, ground) if meets else none,
         part(sent, scheme, order, flux, ground),
-        part(sum_transported, model) if summed else none,
+        part(sum_transported, scheme, order, flux, ground.bed, ground.dx, projection) if summed else none,
         part(settled, scheme, order, reads, _extent_of(flux), ground),
-        part(sum_forced, model) if summed else none,
+        part(sum_forced, force, flux, ground.bed, projection) if summed else none,
         part(looked, ground.bed),
     ]
 

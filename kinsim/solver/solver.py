@@ -11,7 +11,9 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..clock import AnyClock, Courant, Fixed, Replay
+from ..kinetic.rows import Carrier
 from ..kinetic.velocity import Fitted, Grid, Uniform, Window
+from ..memory import require
 from ..method import Kinetic, Macroscopic
 from ..model.ground import Smooth
 from ..scene import Scene
@@ -123,11 +125,16 @@ class Solver:
             self.grid = velocity.grid(reach)
         elif isinstance(velocity, Window):
             self.grid = velocity.grid(2.0 * reach)
+        if self.grid is not None:
+            entries, densities = f"{self._nx} x {self.grid.count} entries", 3 if is_stored(self.method) else 1
+            require(8.0 * densities * self._nx * self.grid.count, f"{densities} densities of {entries}")
         self._take(model_of(self.scene, self.method, self.grid))
 
     def _take(self, model: Model) -> None:
         self.model, self._parts, self._shape = model, parts_of(model), shape_of(model)
         self._rows = np.array([part.row for part in self._parts], dtype=np.int64)
+        if self.grid is not None:
+            self.carrier = Carrier(model, self._nx, self.grid.side)
         bed = model.ground.bed
         self._lifting = np.array([bed.n, bed.bend]) if isinstance(bed, Curve) else np.zeros((2, 1))
 
@@ -237,7 +244,7 @@ class Solver:
             bound = grid.bound
             if isinstance(velocity, Uniform):
                 stops = float(velocity.beyond == "stop")
-                tight = bound - 1.5 * grid.dxi
+                tight = bound - 2.0 * grid.dxi
         slow = 1e-3 * grid.dxi if grid is not None else 0.0
         lifts = 0.0
         if isinstance(self.scene.ground, Smooth) and self.scene.ground.bends:
