@@ -16,7 +16,7 @@ from .checkpoint import Checkpoint, Keeper, Kept, part, under
 from .clock import AnyClock, Courant, Fixed, Replay
 from .diagnostics.causes import Causes
 from .diagnostics.dump import Dump, Recorder
-from .diagnostics.endings import LIFTED_WORDS, Verdict, ending, verdict
+from .diagnostics.endings import ENDED, LIFTED_WORDS, Verdict, ending, verdict
 from .diagnostics.history import Cadence, History
 from .diagnostics.ledger import Ledger
 from .diagnostics.lift import note_lift
@@ -117,7 +117,8 @@ def find_bound(scene: Scene, method: Kinetic, clock: AnyClock, force: bool = Fal
         twin.conclude(block)
     if twin.verdict and twin.verdict.kind == "non-finite":  # forced beyond (28): what blows up asks for any window
         return 10.0 * first_reach or 1.0
-    largest = float(twin.solver.seen[REACH]) + twin.longest * strongest(scene)
+    last = twin.solver.fastest if twin.verdict and twin.verdict.kind in ENDED else 0.0
+    largest = max(float(twin.solver.seen[REACH]), last) + twin.longest * strongest(scene)
     return 1.05 * largest if 0.0 < largest < math.inf else 1.0
 
 

@@ -74,10 +74,9 @@ def checked(place: str, family: Any, given: Any) -> Any:
 
 def described_outside(given: Any, write: SerializerFunctionWrapHandler) -> Any:
     """A part as keys and values; one from outside of the package by its class, its numbers and a hash of its source."""
-    plain = isinstance(given, (int, float, str, type(None)))
-    if plain or (type(given).__module__.startswith("kinsim.") and not callable(given)):
+    own = given if hasattr(given, "__qualname__") else type(given)
+    if isinstance(given, (dict, str, type(None))) or own.__module__.startswith("kinsim."):
         return write(given)
-    own = given if callable(given) and hasattr(given, "__qualname__") else type(given)
     told = {"outside": f"{own.__module__}.{own.__qualname__}", "source": source_hash(own)}
     return told | ({} if own is given else {"numbers": repr(given)})
 

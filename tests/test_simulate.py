@@ -245,8 +245,8 @@ def test_bad_requests_are_refused() -> None:
         ((PARABOLA, 3, Fixed(1e-3, 3)), "simulate: method is of type int; give a Kinetic or Macroscopic"),
         ((PARABOLA, Macroscopic, Fixed(1e-3, 3)), "method is of type type"),
         (("parabola", Macroscopic(3), Fixed(1e-3, 3)), "simulate: scene is of type str; give a Scene"),
-        ((PARABOLA, Macroscopic(3), Fixed(1e-3, 3), 2.5), "save_every = 2.5 is no number of steps"),
-        ((PARABOLA, Macroscopic(3), Fixed(1e-3, 3), None), "save_every = None is no number of steps"),
+        ((PARABOLA, Macroscopic(3), Fixed(1e-3, 3), 2.5), "save_every = 2.5 is no whole number"),
+        ((PARABOLA, Macroscopic(3), Fixed(1e-3, 3), True), "save_every = True is no whole number"),
     ],
 )
 def test_each_argument_is_what_it_should_be(given: tuple[Any, ...], line: str) -> None:

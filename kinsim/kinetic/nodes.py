@@ -12,7 +12,6 @@ from ..schemes.questions import beta_shown, capped, is_sloped
 from ..schemes.tile import N1, N2, P1, P2, H, U
 from .equilibrium import both_sides, is_sampled, one_side, reports, wider
 
-
 ROUNDED = 1.0 - 1e-15
 """Keeps what leaves below what is there, rounding included."""
 

@@ -365,7 +365,8 @@ def march(
                 if may_leave and (kept[tile, RESTS] == 0.0 or shape.summed > 0.0):
                     leaves = leaves or leave_window(shape, place.n, rooms[0])
             reach, still = max(reach, kept[tile, FACES]), still & (kept[tile, CHANGE] == 0.0)
-        seen[REACH] = max(seen[REACH], reach)
+        if reason == COUNTED:
+            seen[REACH] = max(seen[REACH], reach)
         if reason == COUNTED and reach > asked.bound * (1.0 + ROUNDING):
             seen[BEYOND] = max(seen[BEYOND], reach)
             reason = OUTSIDE if asked.stops > 0.0 else COUNTED

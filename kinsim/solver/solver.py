@@ -307,15 +307,22 @@ class Solver:
         """All that the next step depends on."""
         state, before = np.array([self.h, self.q]), np.array(self.before)
         kept = {"step": np.array([self.step, self._dt]), "seen": self.seen.copy(), "state": state, "before": before}
-        return kept | ({"report": self.model.flux.report.copy()} if self.grid is not None else {})
+        if self.grid is None:
+            return kept
+        return kept | {"report": self.model.flux.report.copy(), "cells": np.array(self.grid.count)}
 
     def restore(self, kept: dict[str, NDArray[Any]]) -> None:
         """Stand where `kept` was told."""
         step, self._dt = kept["step"].tolist()
+        if kept["seen"].shape != self.seen.shape or kept["state"].shape != (2, self._nx):
+            raise ValueError("of another run")
         self.step, self.seen = int(step), kept["seen"].copy()
         for (h, q), values in zip(self._states, (kept["state"], kept["before"]), strict=False):
             h[2:-2], q[2:-2] = values
         if self.grid is not None:
+            if isinstance(self._velocity, Window):
+                self.grid = Grid(int(kept["cells"]), self.grid.dxi)
+                self._take(model_of(self.scene, self.method, self.grid))
             self.model.flux.report[:] = kept["report"]
         self._fresh, self._stages = True, None
 
