@@ -48,7 +48,7 @@ class Drawn:
         return self._draw(st.sampled_from(among))  # type: ignore[return-value]
 
 
-@settings(max_examples=150)
+@settings(max_examples=40)
 @given(st.data())
 def test_any_run_is_refused_or_stopped_or_sound(data: st.DataObject) -> None:
     """Warnings are errors here; any error but the one-line refusal passes through."""
@@ -58,7 +58,7 @@ def test_any_run_is_refused_or_stopped_or_sound(data: st.DataObject) -> None:
 
 def test_the_space_holds_what_it_should() -> None:
     """Runs that end, are refused and are stopped; all schemes, wings and orders."""
-    kinds = Counter(attempt(random.Random(seed))[0] for seed in range(120))
+    kinds = Counter(attempt(random.Random(seed))[0] for seed in range(40))
     assert {"finished", "refused", "too-many-steps"} <= set(kinds)
     asked = [_drawn(seed) for seed in range(400)]
     methods = [one.method for one in asked if one]

@@ -34,8 +34,8 @@ def test_a_density_beyond_memory_is_refused(monkeypatch: pytest.MonkeyPatch) -> 
     """By what is free, not by what is built in; fluxes in closed form still have room."""
     monkeypatch.setattr(psutil, "virtual_memory", lambda: SimpleNamespace(available=2**30))
     scene = load_scene("silo")[0]
-    for method, entries in ((Kinetic(velocity=Uniform(10**6, 5.0)), 3), (Kinetic(3, Uniform(10**6, 5.0)), 5)):
-        with pytest.raises(InputError, match=f"{entries} densities of 320 x 1000000 entries would take"):
+    for method in (Kinetic(velocity=Uniform(10**6, 5.0)), Kinetic(3, Uniform(10**6, 5.0))):
+        with pytest.raises(InputError, match="densities of 320 x 1000000 entries would take"):
             simulate(scene, method, Fixed(1e-3, 2))
     assert simulate(scene, Macroscopic(), Fixed(1e-3, 2)).steps == 2
 

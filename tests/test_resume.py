@@ -86,7 +86,7 @@ def test_it_goes_on_bit_for_bit(name: str, tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr(kinsim.checkpoint, "write_checkpoint", write)
     whole = simulate(scene, method, clock, 7, checkpoint=Checkpoint(str(tmp_path / "c"), every=0), **asked)
     monkeypatch.undo()
-    assert len(taken) >= whole.steps // 7
+    assert len(taken) >= (whole.steps - 1) // 7
     for path in taken[:: max(len(taken) // 4, 1)]:
         same(resume(path), whole)
 

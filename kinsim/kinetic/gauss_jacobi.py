@@ -24,6 +24,10 @@ from ..kernel import formula
 from ..macroscopic.closed_form import TINY, ahead
 
 
+SIZES = (2, 3, 4, 6, 8, 16, 32, 64)
+"""Lengths of the tuples of nodes; what is left over has the weight 0. Each length is compiled by itself."""
+
+
 class GaussJacobi(NamedTuple):
     """Half-range moments as sums over nodes in each cell; nodes and weights are tuples of numbers."""
 
@@ -62,12 +66,14 @@ def gauss_jacobi(count: int) -> GaussJacobi:
     from scipy.special import roots_jacobi
 
     t, weights = roots_jacobi(count, 1.0, 0.5)
-    return GaussJacobi(tuple(((1.0 + t) / 2.0).tolist()), tuple((weights / 2.0**2.5).tolist()))
+    filled = next(size for size in SIZES if size >= count) - count
+    nodes, given = [*((1.0 + t) / 2.0).tolist(), *[0.0] * filled], [*(weights / 2.0**2.5).tolist(), *[0.0] * filled]
+    return GaussJacobi(tuple(nodes), tuple(given))
 
 
 def measure(count: int, h: Array, u: Array, beta: Array | float) -> tuple[Array, Array]:
     """Nodes and masses of the smaller side of each cell, each of shape (nx, count), for h, u of shape (nx,)."""
-    s, W = (np.array(part) for part in gauss_jacobi(count))
+    s, W = (np.array(part)[:count] for part in gauss_jacobi(count))
     c = np.sqrt(2.0 * beta * np.maximum(h, 0.0))
     b = np.divide(np.maximum(c - np.abs(u), 0.0), c, out=np.zeros_like(c), where=c > 0)[:, None]
     nodes = c[:, None] * b * (1.0 - s)

@@ -207,7 +207,7 @@ def state_moments(
     at_h, at_u = np.uint64(hr + low - 1), np.uint64(ur + low)
     first, second = np.uint64(n1 + low - 1), np.uint64(n2 + low - 1)
     for k in range(count):
-        by = beta_shown(order, bed, i + k, i + k - one)
+        by = beta_shown(order, bed, i + k, max(i + k, one) - one)
         room[first + k], room[second + k] = leave(flux, room[at_h + k], -room[at_u + k], by)
 
 

@@ -31,6 +31,7 @@ from .march import (
     LIFT_SINCE,
     LIFT_TO,
     LOST_ALL,
+    NOT_FINITE,
     OUTSIDE,
     ROUNDING,
     TICKS,
@@ -225,6 +226,7 @@ class Solver:
             self._states = [[now, before, spare], [spare, now, before], [before, spare, now]][turn]
             self._dt, self._fresh, self._stages = float(dts[steps - 1]), False, None
             self.step += steps
+        self._fresh |= reason in (TIGHT, OUTSIDE, NOT_FINITE)  # what was kept of tiles is of the step that was refused
         return steps, reason
 
     def _go_tight(self, asked: Asked, planned: Array, dts: Array) -> tuple[int, int]:
