@@ -36,7 +36,8 @@ def scene_schema() -> dict[str, Any]:
     _mend([schema, kinds], named)
     for name in named.difference(UNNAMED):
         kinds[name].setdefault("required", []).append("kind")
-    schema["properties"] = _told(schema["properties"], inspect.getdoc(Scene) or "")
+    schema["properties"] = _told(_told(schema["properties"], inspect.getdoc(Scene) or ""), schema["description"])
+    schema["description"] = " ".join(schema["description"].partition("\n\nAttributes:")[0].split())
     return {"$schema": "http://json-schema.org/draft-07/schema#", **schema, "title": "scene", "definitions": kinds}
 
 

@@ -126,8 +126,8 @@ def test_a_refusal_in_the_middle_keeps_what_there_is() -> None:
 def test_a_run_that_is_stopped_shows_f_of_its_last_state() -> None:
     """To the bit what the same steps leave in a run that ends there, though f went on to a step that was given up."""
     scene = Scene(Cells(0, 1, 8), Profile(np.linspace(1, 2, 8)), ConstantSlope(0.5), boundary="periodic", epsilon=0.4)
-    stopped = simulate(scene, Kinetic(4, Window(0.05)), Courant(0.9, 1e3, most=7))
-    ended = simulate(scene, Kinetic(4, Window(0.05)), stopped.replay)
+    stopped = simulate(scene, Kinetic(4, Window(0.05)), Courant(0.9, 1e3, most=7), 100)
+    ended = simulate(scene, Kinetic(4, Window(0.05)), stopped.replay, 100)
     assert (stopped.verdict.kind, ended.verdict.kind) == ("too-many-steps", "finished")
     for name, column in ended.entries.items():
         np.testing.assert_array_equal(stopped.entries[name], column, err_msg=name)

@@ -23,7 +23,6 @@ from ..arrays import Array
 from ..kernel import formula
 from ..macroscopic.closed_form import TINY, ahead
 
-
 SIZES = (2, 3, 4, 6, 8, 16, 32, 64)
 """Lengths of the tuples of nodes; what is left over has the weight 0. Each length is compiled by itself."""
 

@@ -48,8 +48,8 @@ class Second(NamedTuple):
             i, h, u = begin + k, room[H + k], room[U + k]
             free = 1.0 - max(room[THETA + k - 1], room[THETA + k])
             low, high = max(h - room[HP + k], 0.0), max(h + room[HP + k], 0.0)
-            per = room[UP + k] / max(h, DRY)
-            slow, fast = u - high * per, u + low * per
+            per = max(h, DRY)
+            slow, fast = u - high / per * room[UP + k], u + low / per * room[UP + k]
             a = -0.5 * lam * (high * fast - low * slow)  # h_t = -(h u)_x
             steep = beta_of(bed, i) * (high - low) + free * (0.5 * (beta_jump(bed, i) * h))
             b = -0.5 * lam * (u * (fast - slow) + steep)  # u_t = -u u_x - beta h_x + g
