@@ -199,7 +199,8 @@ class Solver:
         planned = np.array(clock.dts) if isinstance(clock, Replay) else np.empty(0)
         if not isinstance(clock, Courant):
             most = min(most, int(clock.ticks - self.seen[TICKS]) + int(self.seen[LEFT_OVER] > 0.0))
-        asked = self._asked(clock, min(until, clock.end), past)
+        until = min(until, clock.end) if isinstance(clock, Courant) else until  # the others end after so many steps
+        asked = self._asked(clock, until, past)
         dts, done, reason = np.empty(most), 0, COUNTED
         while done < most and reason == COUNTED:
             steps, reason = self._go(asked, planned, most - done, self._room, dts[done:])
@@ -208,7 +209,7 @@ class Solver:
                 steps, reason = self._go_tight(asked, planned, dts[done:])
                 done += steps
             if reason == OUTSIDE and self._follow(float(self.seen[BEYOND])):
-                asked, reason = self._asked(clock, min(until, clock.end), past), COUNTED
+                asked, reason = self._asked(clock, until, past), COUNTED
         return Block(reason, dts[:done].copy(), self.step, self.t, self.h, self.q, self.ended(clock), self)
 
     def _go(
