@@ -55,11 +55,11 @@ def main(chapter: Chapter) -> None:
     )
 
 
-def column(cells: int = 160) -> Scene:
-    """The silo of the paper on dry ground."""
+def column(cells: int = 160, layer: float = 0.0) -> Scene:
+    """The silo of the paper on dry ground, or on a layer."""
     silo = load_scene("silo")[0]
-    silo = replace(silo, cells=Cells(-4, 4, cells), boundary="wall", title="breaking column on dry ground")
-    return replace(silo, heap=Profile(np.where(np.abs(silo.x) < 1, 2.3, 0.0)))
+    silo = replace(silo, cells=Cells(-4, 4, cells), boundary="wall", title="breaking column")
+    return replace(silo, heap=Profile(np.where(np.abs(silo.x) < 1, 2.3, layer)))
 
 
 def few(chapter: Chapter) -> None:
@@ -102,9 +102,14 @@ def resting(chapter: Chapter) -> None:
 
 
 def nodes(chapter: Chapter, counts: tuple[int, ...]) -> None:
-    """L1(h) to the closed form at t = 1.5, over the number of nodes."""
-    scene, rows = column(64), []
+    """L1(h) to the closed form at t = 1.5, over the number of nodes.
+
+    In second order a cell at the edge of dry ground may show particles faster than any that it has; these are not
+    sent, however many nodes there are. There the two are compared by their errors.
+    """
+    rows = []
     for order_ in (1, 2):
+        scene = column(64, 0.0 if order_ == 1 else 0.3)
         (twin,) = family(scene, Macroscopic(4, order=order_), Courant(0.8, 1.5))
         for name in ("cell-average", "matched"):
             grids = [Kinetic(4, Uniform(n), name, order=order_) for n in counts]
@@ -119,8 +124,16 @@ def nodes(chapter: Chapter, counts: tuple[int, ...]) -> None:
         )
         chapter.claim(f"fitted, 8 nodes, order {order_}: L1(h) to the closed form", off[-1], high=1e-12)
     chapter.table(
-        "L1(h) to the closed form at t = 1.5, column on dry ground", ("", *(f"{n} nodes" for n in counts)), rows
+        "L1(h) to the closed form at t = 1.5, column on dry ground, in second order on a layer of 0.3",
+        ("", *(f"{n} nodes" for n in counts)),
+        rows,
     )
+    scene = column(128)
+    fine = simulate(column(2048), Macroscopic(4, order=2), Courant(0.8, 1.5)).h[-1].reshape(128, -1).mean(axis=1)
+    ends = [simulate(scene, of, Courant(0.8, 1.5)).h[-1] for of in (Macroscopic(4, order=2), Kinetic(4, order=2))]
+    closed, summed = (float(np.abs(h - fine).sum() * scene.cells.dx) for h in ends)
+    chapter.claim("column on dry ground, order 2: error of 128 nodes over that of the closed form", summed / closed,
+                  low=0.9, high=1.1)  # fmt: skip
 
 
 def held(chapter: Chapter) -> tuple[Run, Run]:

@@ -15,11 +15,11 @@ from .equilibrium import both_sides, is_sampled, one_side, reports, wider
 ROUNDED = 1.0 - 1e-15
 """Keeps what leaves below what is there, rounding included."""
 
-PASSES = 6
-"""Passes that give back what a cap took; two or three do in a fan on dry ground."""
+PASSES = 5
+"""How often what a cap took is given back; two or three do in a fan."""
 
-FULL = 1e-9
-"""z (M - z)/M^2 of a node below which it has no room left, or nothing."""
+EVEN = 1e-14
+"""The share of what is sent that may be missing."""
 
 
 class Nodes(NamedTuple):
@@ -140,38 +140,28 @@ def leaving(flux, scheme, order, h, u, by, h_cell, u_cell, beta, lam, side):
 def cap(w1, w2, M, begin, end, lam, dxi, side):
     """lam xi G <= M, and what that takes of mass and momentum given back as (al + ga e) z (M - z), z = lam xi G.
 
-    Where a node would get more than M or less than 0, as large a share as all nodes can bear is given, and then the
-    rest anew to those that still have room.
+    What a node would then have beyond M, or below 0, is taken and given back once more. Where M holds no such mass
+    and momentum, as at the edge of dry ground, less is sent.
     """
-    lost1, lost2 = 0.0, 0.0
+    scale = lam / dxi
+    asked1, asked2 = 0.0, 0.0
     for k in range(begin, end):
-        least = min(side[k], ROUNDED * M[k] / (lam * (k + 0.5) * dxi))
-        lost1 += w1[k] * (side[k] - least)
-        lost2 += w2[k] * (side[k] - least)
-        side[k] = least
-    lost1, lost2 = lost1 * lam / dxi, lost2 * lam / dxi
-    passes = PASSES if lost1 > 0.0 else 0
-    for _ in range(passes):
-        a, b, c = 0.0, 0.0, 0.0
+        asked1, asked2 = asked1 + scale * (w1[k] * side[k]), asked2 + scale * (w2[k] * side[k])
+    for k in range(begin, end):
+        side[k] = min(side[k], ROUNDED * M[k] / (lam * (k + 0.5) * dxi))
+    for _ in range(PASSES):
+        lost1, lost2, a, b, c = asked1, asked2, 0.0, 0.0, 0.0
         for k in range(begin, end):
             z, e = lam * (k + 0.5) * dxi * side[k], w2[k] / w1[k]
+            lost1, lost2 = lost1 - scale * (w1[k] * side[k]), lost2 - scale * (w2[k] * side[k])
             room = z * (M[k] - z)
             a, b, c = a + room, b + e * room, c + e * e * room
         det = a * c - b * b
-        if not det > 0.0:
+        if not (det > 0.0 and abs(lost1) > EVEN * asked1):
             break
         al, ga = (lost1 * c - lost2 * b) / det, (lost2 * a - lost1 * b) / det
-        most = 1.0
         for k in range(begin, end):
-            z, by = lam * (k + 0.5) * dxi * side[k], al + ga * (w2[k] / w1[k])
-            wish = max(by * z, by * (z - M[k]))
-            most = max(most, wish if z * (M[k] - z) > FULL * (M[k] * M[k]) else 0.0)
-        share = 1.0 / most
-        for k in range(begin, end):
-            z, by = lam * (k + 0.5) * dxi * side[k], al + ga * (w2[k] / w1[k])
-            given = side[k] + share * by * side[k] * (M[k] - z)
+            z, e = lam * (k + 0.5) * dxi * side[k], w2[k] / w1[k]
+            given = side[k] + (al + ga * e) * side[k] * (M[k] - z)
             side[k] = max(min(given, ROUNDED * M[k] / (lam * (k + 0.5) * dxi)), 0.0)
-        if share == 1.0:
-            break
-        lost1, lost2 = (1.0 - share) * lost1, (1.0 - share) * lost2
     return begin, end

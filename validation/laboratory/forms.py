@@ -14,10 +14,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from kinsim.kinetic.equilibrium import fill, weights
 from kinsim.kinetic.velocity import Grid
 from kinsim.macroscopic.closed_form import ClosedForm, half_moments_of_cells
 from kinsim.mean import mean_velocity
-from kinsim.method import EquilibriumName, fill, weights
+from kinsim.method import EquilibriumName
 from kinsim.smooth.affine import affine_map
 from kinsim.smooth.riccati import riccati
 from laboratory.bend import Bend
