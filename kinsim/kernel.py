@@ -107,6 +107,11 @@ def _question(default: F, options: dict[str, Any]) -> F:
     return ask  # type: ignore[return-value]
 
 
+def answers(asked: Any, question: Callable[..., Any]) -> bool:
+    """Whether the class of a value has an answer of its own to a question."""
+    return hasattr(type(asked), question.__name__)
+
+
 def at(value: Any, i: int) -> float:
     """The number of place i: of one number for all places, or of an array."""
     return value[i] if isinstance(value, np.ndarray) else value

@@ -69,25 +69,34 @@ class Nodes(NamedTuple):
         return True
 
     def extent(flux, low, high):
-        return -outermost(flux, -low), outermost(flux, high)
+        shift, wide = rim(flux.equilibrium, flux.dxi)
+        return -outermost(flux.dxi, shift, wide, -low), outermost(flux.dxi, shift, wide, high)
 
 
 class Spread(NamedTuple):
-    """Where the particles of a density on velocity cells are."""
+    """Where the particles of a density on velocity cells are: see `outermost`."""
 
-    equilibrium: Any
     dxi: float
+    shift: float
+    wide: float
 
     def extent(flux, low, high):
-        return -outermost(flux, -low), outermost(flux, high)
+        dxi, shift, wide = flux
+        return -outermost(dxi, shift, wide, -low), outermost(dxi, shift, wide, high)
 
 
 @formula()
-def outermost(flux, velocity):
+def rim(equilibrium: Any, dxi: float) -> tuple[float, float]:
+    """`shift` and `wide` of an equilibrium, by which `outermost` tells how far it reaches."""
+    if is_sampled(equilibrium):
+        return 0.5, 0.0
+    return 0.0, wider(equilibrium, dxi)
+
+
+@formula()
+def outermost(dxi, shift, wide, velocity):
     """The outermost node that is occupied of a density whose fastest particle has this velocity."""
-    if is_sampled(flux.equilibrium):
-        return (math.ceil(velocity / flux.dxi - 0.5) - 0.5) * flux.dxi
-    return (math.ceil((velocity + wider(flux.equilibrium, flux.dxi)) / flux.dxi) - 0.5) * flux.dxi
+    return (math.ceil((velocity + wide) / dxi - shift) - 0.5) * dxi
 
 
 @routine("reassoc", "contract", "nsz")

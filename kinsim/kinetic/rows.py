@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..kernel import Apart, generic, kernel, perform, question, routine
+from ..kernel import Apart, kernel, perform, question, routine, short_question
 from ..schemes.bed import beta_of
 from ..schemes.questions import (
     acts_before,
@@ -184,10 +184,12 @@ def pushed(force: Any, flux: Any, bed: Any, wanted: Wanted, dt: float, place: Pl
 
 
 @kernel
-def carry(parts: NDArray[np.int64], dt: float, rooms: Array, nx: int, span: Array, stored: bool, push: bool) -> float:
+def carry(
+    parts: NDArray[np.int64], dt: float, rooms: Array, nx: int, span: Array, stored: bool, moves: bool, pushes: bool
+) -> float:  # fmt: skip
     """The density of all cells of a step whose stages stand in `rooms`; returns the mass that left the window, per dx.
 
-    `stored` says that T is kept for all cells, `push` that f is wanted.
+    `stored` says that T is kept for all cells, `moves` that it is to be made, `pushes` that f is.
     """
     gone = 0.0
     for tile in range(rooms.shape[0]):
@@ -196,8 +198,9 @@ def carry(parts: NDArray[np.int64], dt: float, rooms: Array, nx: int, span: Arra
         for first in range(0, n, CHUNK):
             span[0], span[1] = first, min(first + CHUNK, n)
             span[2], span[3] = begin + first if stored else 0, begin + first
-            perform(parts, 0, dt, 2 + begin, n, at_left, at_right, rooms[tile])
-            if push:
+            if moves:
+                perform(parts, 0, dt, 2 + begin, n, at_left, at_right, rooms[tile])
+            if pushes:
                 gone += perform(parts, 1, dt, 2 + begin, n, at_left, at_right, rooms[tile])
     return gone
 
@@ -221,19 +224,27 @@ class Carrier:
 
     def __call__(self, dt: float, rooms: Array, *names: str) -> tuple[Wanted, float]:
         """What is asked for, by the names T, f, M and B, and the mass that left the window, per dx."""
-        scheme, order, flux, force, _, ground = self._model
         wanted = wanted_of(self._nx, self._xi, *names)
-        values = (scheme, order, flux, ground.bed, ground.dx, wanted)
-        source = flux if acts_before(force) else Width(flux.dxi)
-        bed = ground.bed if acts_before(force) else Level()
-        if self._made is None:
-            self._made = Apart(transported, values, Place), Apart(pushed, (force, source, bed, wanted), Place)
-        else:
-            self._made[0].point_at(values)
-            self._made[1].point_at((force, source, bed, wanted))
-        parts = np.array([part.row for part in self._made], dtype=np.int64)
-        lost = carry(parts, dt, rooms, self._nx, wanted.span, "T" in names, "f" in names)
+        lost = carry(self._parts(wanted), dt, rooms, self._nx, wanted.span, "T" in names, True, "f" in names)
         return wanted, float(lost)
+
+    def push(self, rooms: Array, T: Array) -> Wanted:
+        """f after the force, of what stands after transport, shape (nx, n)."""
+        wanted = wanted_of(self._nx, self._xi, "T", "f")
+        wanted.T[:] = T
+        carry(self._parts(wanted), 0.0, rooms, self._nx, wanted.span, True, False, True)
+        return wanted
+
+    def _parts(self, wanted: Wanted) -> NDArray[np.int64]:
+        scheme, order, flux, force, _, ground = self._model
+        transports = (scheme, order, flux, ground.bed, ground.dx, wanted)
+        pushes = (force, *read_by(force, flux, ground.bed), wanted)
+        if self._made is None:
+            self._made = Apart(transported, transports, Place), Apart(pushed, pushes, Place)
+        else:
+            self._made[0].point_at(transports)
+            self._made[1].point_at(pushes)
+        return np.array([part.row for part in self._made], dtype=np.int64)
 
 
 class Width(NamedTuple):
@@ -249,23 +260,9 @@ class Level(NamedTuple):
         return 0.0
 
 
-@generic
-def push_transported(model: Model, rooms: Array, nx: int, T: Array, f: Array, offset: Array) -> None:
-    """f after the force, of rows T after transport."""
-    n = T.shape[1]
-    work, padded = np.zeros((2, n // 2)), np.zeros((2, n + 4))
-    for tile in range(rooms.shape[0]):
-        at = tile * TILE
-        place = Place(2 + at, min(TILE, nx - at), tile == 0, tile == rooms.shape[0] - 1)
-        bed, room = model.ground.bed, rooms[tile]
-        push_rows(model.force, model.flux, bed, place, 0, place.n, room, work, padded, T, at, f, offset, at)
-
-
-def push_all(model: Model, rooms: Array, T: Array) -> tuple[Array, Array]:
-    """f after the force, shape (nx, n), of what stands after transport, and how far its nodes moved."""
-    f, offset = np.zeros_like(T), np.zeros(T.shape[0])
-    push_transported(model, rooms, T.shape[0], np.ascontiguousarray(T), f, offset)
-    return f, offset
+def read_by(force: Any, flux: Any, bed: Any) -> tuple[Any, Any]:
+    """What a force reads of a flux and of a bed: velocity cells, and M too if it acts on M."""
+    return (flux, bed) if acts_before(force) else (Width(flux.dxi), Level())
 
 
 class FluxDifference(NamedTuple):
@@ -285,6 +282,15 @@ class Resummed(NamedTuple):
     xi: Array
     work: Array
     padded: Array
+
+    def is_summed(projection: Any) -> bool:  # type: ignore[misc]
+        return True
+
+
+@short_question
+def is_summed(projection: Any) -> bool:
+    """Whether U^{n+1} is summed anew from f, which then has to be stored."""
+    return False
 
 
 @routine()

@@ -13,7 +13,7 @@ from ..kinetic.equilibrium import Status, fill
 from ..kinetic.equilibrium.averages import mass_outside
 from ..kinetic.equilibrium.questions import reports
 from ..kinetic.force import moves_nodes
-from ..kinetic.rows import Carrier, Resummed, cell_rows, face_rows, push_all
+from ..kinetic.rows import Carrier, cell_rows, face_rows, is_summed
 from ..kinetic.velocity import Grid, Uniform, Window
 from ..method import Kinetic
 from ..schemes.questions import comes_back, has_own_density
@@ -67,7 +67,7 @@ class Density:
     @cached_property
     def _made(self) -> dict[str, Any]:
         made = self._carried("T", "f", "M", "B")
-        if isinstance(self._model.projection, Resummed):
+        if is_summed(self._model.projection):
             own = self._model.projection
             made |= {"T": own.T, "f": own.f, "offset": own.offset}
         return made
@@ -75,7 +75,7 @@ class Density:
     @cached_property
     def _forced(self) -> dict[str, Any]:
         """f alone, in one sweep."""
-        if "_made" in self.__dict__ or isinstance(self._model.projection, Resummed):
+        if "_made" in self.__dict__ or is_summed(self._model.projection):
             return self._made
         return self._carried("f")
 
@@ -153,8 +153,8 @@ class Density:
     def pushed_from(self, narrow: Density) -> Density:
         """This one, with f as the force makes it of what the narrower density carries after transport."""
         pad = ((0, 0), ((self.grid.count - narrow.grid.count) // 2,) * 2)
-        f, offset = push_all(self._model, self._stages.rooms, np.pad(narrow.transported, pad))
-        self.__dict__["_forced"] = {"f": f, "offset": offset, "lost": 0.0}
+        made = self._carrier.push(self._stages.rooms, np.pad(narrow.transported, pad))
+        self.__dict__["_forced"] = {**made._asdict(), "lost": 0.0}
         return self
 
     @cached_property

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..kernel import formula, greatest, kernel, perform, routine
+from ..kinetic.nodes import outermost
 from ..schemes.bed import beta_of
 from ..schemes.formulas import updated
 from ..schemes.questions import extent, face_states, fluxes, is_sloped, judge, limits_outflow, settle, show
@@ -111,7 +112,7 @@ class Shape(NamedTuple):
 
     `dx` is the length of a cell; the ends are `left` and `right`; `two_fluxes` is 1 where the cells of a face may take
     different fluxes, `sloped` where cells show slopes, `summed` where U^{n+1} is summed anew from f. (28) counts a
-    velocity v as (ceil((v + wider)/dxi - shift) - 1/2) dxi, at most `outermost`; as it is if dxi is 0.
+    velocity as the outermost node that is occupied, at most `outermost`; as it is if dxi is 0.
     """
 
     dx: float
@@ -122,7 +123,7 @@ class Shape(NamedTuple):
     summed: float
     dxi: float
     shift: float
-    wider: float
+    wide: float
     outermost: float
     beta_left: float
     beta_right: float
@@ -253,8 +254,7 @@ def count_velocity(shape: Shape, fastest: float) -> float:
     """The outermost velocity that (28) counts, where the fastest particle has |u| + c = `fastest`."""
     if shape.dxi == 0.0 or fastest == 0.0:
         return fastest
-    node = (math.ceil((fastest + shape.wider) / shape.dxi - shape.shift) - 0.5) * shape.dxi
-    return min(node, shape.outermost)
+    return min(outermost(shape.dxi, shape.shift, shape.wide, fastest), shape.outermost)
 
 
 @formula()

@@ -9,12 +9,12 @@ import numpy as np
 
 from ..arrays import Array
 from ..errors import InputError
-from ..kernel import Apart, plain, routine
-from ..kinetic.equilibrium import EQUILIBRIA, is_sampled, weights, wider
+from ..kernel import Apart, answers, plain, routine
+from ..kinetic.equilibrium import EQUILIBRIA, weights
 from ..kinetic.force import FORCES, After, Before, Unforced
 from ..kinetic.gauss_jacobi import gauss_jacobi
-from ..kinetic.nodes import Nodes, Spread
-from ..kinetic.rows import FluxDifference, Resummed, sum_forced, sum_transported
+from ..kinetic.nodes import Nodes, Spread, rim
+from ..kinetic.rows import FluxDifference, Resummed, is_summed, read_by, sum_forced, sum_transported
 from ..kinetic.velocity import Fitted, Grid
 from ..macroscopic.closed_form import ClosedForm
 from ..macroscopic.outside import outside
@@ -25,7 +25,7 @@ from ..scene import Scene
 from ..schemes.bed import Curve, Plane, beta_of
 from ..schemes.friction import law_of
 from ..schemes.order import First, Second
-from ..schemes.questions import acts_before, has_two_fluxes, is_sloped
+from ..schemes.questions import acts_before, face_states, has_two_fluxes, is_sloped, judge, show
 from ..schemes.reflecting import Reflecting
 from ..schemes.scheme1 import Upwind
 from ..schemes.scheme4 import Held
@@ -138,29 +138,28 @@ def nothing(dt: float, place: Place, room: Array) -> float:
 def parts_of(model: Model) -> list[Apart]:
     """The parts of a step, compiled for the classes that each of them reads."""
     scheme, order, flux, force, projection, ground = model
-    sloped, reads = is_sloped(order), Before() if acts_before(force) else After()
+    reads = Before() if acts_before(force) else After()
 
     def part(function: Any, *values: Any) -> Apart:
         return Apart(function, values, Place)
 
     none = part(nothing)
-    judges, meets = isinstance(scheme, Held | Reflecting), isinstance(scheme, Held)
-    summed = isinstance(projection, Resummed)
+    summed = is_summed(projection)
     return [
-        part(judged, scheme, ground) if judges else none,
-        part(shown, order, ground) if sloped else none,
-        part(met, scheme, order, ground) if meets else none,
+        part(judged, scheme, ground) if answers(scheme, judge) else none,
+        part(shown, order, ground) if answers(order, show) else none,
+        part(met, scheme, order, ground) if answers(scheme, face_states) else none,
         part(sent, scheme, order, flux, ground),
         part(sum_transported, scheme, order, flux, ground.bed, ground.dx, projection) if summed else none,
         part(settled, scheme, order, reads, _extent_of(flux), ground),
-        part(sum_forced, force, flux, ground.bed, projection) if summed else none,
+        part(sum_forced, force, *read_by(force, flux, ground.bed), projection) if summed else none,
         part(looked, ground.bed),
     ]
 
 
 def _extent_of(flux: Any) -> Any:
     """A flux that has the same extent, and no more to be compiled for than that."""
-    return Spread(flux.equilibrium, flux.dxi) if isinstance(flux, Nodes) else ClosedForm()
+    return Spread(flux.dxi, *rim(flux.equilibrium, flux.dxi)) if isinstance(flux, Nodes) else ClosedForm()
 
 
 def shape_of(model: Model) -> Shape:
@@ -169,9 +168,9 @@ def shape_of(model: Model) -> Shape:
     dxi = shift = wide = outermost = 0.0
     if isinstance(flux, Nodes):
         dxi, outermost = flux.dxi, (flux.w1.size - 0.5) * flux.dxi
-        shift, wide = (0.5, 0.0) if is_sampled(flux.equilibrium) else (0.0, wider(flux.equilibrium, flux.dxi))
+        shift, wide = rim(flux.equilibrium, flux.dxi)
     betas = (beta_of(ground.bed, 1), beta_of(ground.bed, nx - 2)) if nx > 1 else (ground.bed.beta, ground.bed.beta)
-    two, sloped, summed = has_two_fluxes(model.scheme), is_sloped(model.order), isinstance(model.projection, Resummed)
+    two, sloped, summed = has_two_fluxes(model.scheme), is_sloped(model.order), is_summed(model.projection)
     return Shape(
         ground.dx, ground.left, ground.right, float(two), float(sloped), float(summed), dxi, shift, wide, outermost,
         *map(float, betas),
