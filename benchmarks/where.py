@@ -58,7 +58,7 @@ finally:
 """
 
 REGISTRIES = """
-import kinsim.kernel
+import kinsim.compiled
 from numba.core.registry import cpu_target
 cpu_target.typing_context.refresh()
 cpu_target.target_context.refresh()

@@ -14,7 +14,15 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn
 PATIENCE = 1.0
 """Seconds before a bar shows."""
 
-COMPILING = "compiling kernels, only this once"
+COMPILING = "compiling {what}: usually 5 to 20 s in all, and kept for later runs"
+
+STEP = "the time step of this method"
+
+PARTS = {
+    "march": "the time loop", "judged": "what holds at faces", "shown": "slopes", "met": "face states",
+    "sent": "fluxes", "settled": "friction", "transported": "transport of f", "pushed": "the force on f",
+}  # fmt: skip
+"""What the parts of a step are called on a bar."""
 
 
 class Watched:
@@ -45,12 +53,13 @@ class Watched:
     def __call__(self, share: float) -> None:
         self._bar.update(self._task, completed=share, description="running")
 
-    def _compiling(self, begins: bool) -> None:
+    def _compiling(self, part: str) -> None:
         """Without a bar it is told in a line, the first time."""
-        self._bar.update(self._task, description=COMPILING if begins else "preparing")
+        words = COMPILING.format(what=PARTS.get(part, STEP)) if part else "preparing"
+        self._bar.update(self._task, description=words)
         if self._tell_once:
             self._tell_once = False
-            self._bar.console.print(COMPILING)
+            self._bar.console.print(COMPILING.format(what=STEP))
 
 
 class _Late(Progress):
@@ -69,11 +78,15 @@ class _Late(Progress):
 class _Compiling(event.Listener):
     """Says so when numba compiles; what is found on disk is not compiled."""
 
-    def __init__(self, say: Callable[[bool], None]) -> None:
-        self._say = say
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say, self._inside = say, 0
 
-    def on_start(self, event: object) -> None:
-        self._say(True)
+    def on_start(self, event: event.Event) -> None:
+        self._inside += 1
+        if self._inside == 1:  # what it calls is compiled on the way
+            self._say(event.data["dispatcher"].__name__)
 
-    def on_end(self, event: object) -> None:
-        self._say(False)
+    def on_end(self, event: event.Event) -> None:
+        self._inside -= 1
+        if not self._inside:
+            self._say("")

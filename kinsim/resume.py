@@ -18,7 +18,7 @@ from .errors import InputError
 from .method import Kinetic, Macroscopic
 from .run import Run, description
 from .scene import Scene
-from .simulate import Progress, Simulation
+from .simulation import Progress, Simulation
 
 KINDS: dict[str, Any] = {
     "scene": Scene, "method": Kinetic | Macroscopic, "clock": Fixed | Courant | Replay, "dumps": list[Dump],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import cached_property
 from typing import Annotated
 
@@ -14,10 +15,11 @@ from .errors import InputError
 from .mean import mean_velocity
 from .model.boundary import Boundary, streams
 from .model.cells import TINY, Cells
-from .model.chute import Chute, ConstantSlope
+from .model.chute import Chute, ConstantSlope, SmoothChute
 from .model.friction import Friction, Frictionless, held_by
 from .model.ground import Flat, Ground, Smooth
-from .model.heap import Heap
+from .model.heap import Heap, Profile, Table
+from .model.slope_table import SlopeTable
 from .value import Number, value
 
 
@@ -125,3 +127,13 @@ class Scene:
                 f"heap: height {h[i]:g} and velocity {u[i]:g} at x = {x[i]:g} have no finite momentum flux"
             )
         return h, q
+
+
+def self_contained(scene: Scene) -> Scene:
+    """The scene, with what it reads from files as values of its own."""
+    if isinstance(scene.chute, SmoothChute) and isinstance(scene.chute.zeta, SlopeTable):
+        scene = replace(scene, chute=replace(scene.chute, zeta=scene.chute.zeta.points()))
+    if not isinstance(scene.heap, Table):
+        return scene
+    h, u = scene.heap(scene.x)
+    return replace(scene, heap=Profile(h, u))

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
+from covering import covering
 
 from kinsim import Cells, ConstantSlope, Coulomb, Fitted, Fixed, Kinetic, Macroscopic, Profile, Scene, Uniform
 from kinsim.exact import random_pile
@@ -41,8 +44,22 @@ PILES = [
     for zeta in (0.0, DELTA / 2, DELTA, 2 * DELTA, 1.0, -2 * DELTA)
     for boundary in (("wall", "open") if abs(zeta) <= DELTA else ("wall",))
 ]
-LEANING = pytest.mark.parametrize(("zeta", "boundary", "seed"), [(*of, i % 3) for i, of in enumerate(PILES)])
-LEANING_ANY = pytest.mark.parametrize(("zeta", "boundary", "seed"), [(*of, seed) for of in PILES for seed in range(3)])
+LEANING = [(*of, i % 3) for i, of in enumerate(PILES)]
+LEANING_ANY = [(*of, seed) for of in PILES for seed in range(3)]
+"""zeta, boundary and seed."""
+
+
+def on_piles(piles: list[tuple[float, str, int]], *axes: Iterable[Any]) -> list[tuple[Any, ...]]:
+    """Cases over axes and zeta, boundary and seed of some piles, in which all pairs meet."""
+    return covering(*axes, *map(dict.fromkeys, zip(*piles, strict=True)), where=lambda *case: case[-3:] in piles)
+
+
+def of_methods(cases: list[tuple[Any, ...]]) -> list[Any]:
+    """Cases that begin with a wing and a variant, for tests that take the method which these two make."""
+    return [
+        pytest.param(METHODS[f"{wing}, {name}"], *rest, id="-".join(map(str, (f"{wing}, {name}", *rest))))
+        for wing, name, *rest in cases
+    ]
 
 
 def pile(zeta: float, boundary: str, seed: int, fill: float = 1.0) -> Scene:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from kinsim import printed
-from kinsim.kernel import routine
+from kinsim.compiled import routine
 from kinsim.kinetic.force import FORCES, remap
 from kinsim.macroscopic import closed_form
 from kinsim.schemes import scheme23

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from kinsim import Cells, ConstantSlope, Coulomb, Frictionless, Profile, Scene
-from kinsim.kernel import generic
+from kinsim.compiled import generic
 from kinsim.kinetic.force import push
 
 BETA = 0.4

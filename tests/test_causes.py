@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
 from typing import get_args
@@ -10,6 +9,7 @@ from typing import get_args
 import numpy as np
 import pytest
 from conftest import EPS, SCENES
+from covering import covering
 from states import incline
 
 from kinsim import (
@@ -28,20 +28,18 @@ from kinsim.solver.solver import Solver
 
 PROJECTIONS: tuple[ProjectionName, ...] = get_args(ProjectionName)
 
-CUT = Uniform(48, 1.25, "warn")
+VELOCITIES = {"uniform": Uniform(48), "cut": Uniform(48, 1.25, "warn"), "window": Window(0.08)}
 
-HOUSES = [
-    (velocity, *rooms)
-    for velocity in (Uniform(48), CUT, Window(0.08))
-    for rooms in itertools.product(EQUILIBRIA, FORCES, PROJECTIONS)
-    if velocity != CUT or rooms[0] in ("cell-average", "sampled")  # the others refill the window
-]
+HOUSES = covering(
+    VELOCITIES, EQUILIBRIA, FORCES, PROJECTIONS, (1, 3),
+    where=lambda velocity, equilibrium, *_: velocity != "cut" or equilibrium in ("cell-average", "sampled"),
+)  # fmt: skip
+"""The other equilibria refill the window."""
 
 
-@pytest.mark.parametrize(("velocity", "equilibrium", "force", "projection"), HOUSES)
-@pytest.mark.parametrize("scheme", [1, 3])
+@pytest.mark.parametrize(("velocity", "equilibrium", "force", "projection", "scheme"), HOUSES)
 def test_causes_add_up(
-    velocity: Uniform | Window,
+    velocity: str,
     equilibrium: EquilibriumName,
     force: ForceName,
     projection: ProjectionName,
@@ -49,7 +47,9 @@ def test_causes_add_up(
 ) -> None:
     """Stage by stage the changes of mass, momentum, energy and entropy add up to the whole."""
     scene = replace(SCENES["silo-incline"][0], cells=Cells(-3, 3, 40))
-    run = simulate(scene, Kinetic(scheme, velocity, equilibrium, force, projection), Fixed(1e-2, 30), 10, causes=True)
+    run = simulate(
+        scene, Kinetic(scheme, VELOCITIES[velocity], equilibrium, force, projection), Fixed(1e-2, 30), 10, causes=True
+    )
     causes = run.causes
     gap = (causes["sum"].sum("stage") - causes["total"]).values
     size = np.abs(causes["sum"].values).sum(axis=1).max() + run.entries["mass"][0]

@@ -8,6 +8,7 @@ from importlib import import_module
 
 import numpy as np
 import pytest
+from covering import covering
 from typer.testing import CliRunner
 
 from kinsim import (
@@ -180,9 +181,14 @@ def test_predictions_are_pilots_times_the_measured_margin() -> None:
     assert pilots.foreseen(Kinetic(velocity=Uniform(256))) < pilots.foreseen(Kinetic(velocity=Uniform(128))) < more[2]
 
 
-@pytest.mark.parametrize("method", [Kinetic(velocity=Uniform(16)), Kinetic(velocity=Fitted(2), order=2)], ids=repr)
-@pytest.mark.parametrize("clock", [Fixed(0.004, 200), Courant(0.45, 0.8)], ids=repr)
-@pytest.mark.parametrize("count", [2, 7, 80, 239])
+@pytest.mark.parametrize(
+    ("count", "clock", "method"),
+    covering(
+        [2, 7, 80, 239], [Fixed(0.004, 200), Courant(0.45, 0.8)],
+        [Kinetic(velocity=Uniform(16)), Kinetic(velocity=Fitted(2), order=2)],
+    ),
+    ids=repr,
+)  # fmt: skip
 def test_a_scene_of_few_cells_is_its_own_pilot(count: int, clock: Fixed | Courant, method: Kinetic) -> None:
     """To the bit: the very run, and its twin in the very steps."""
     scene = replace(SILO, heap=Blocks((0,), (1.0, 0.3)), cells=replace(SILO.cells, count=count))

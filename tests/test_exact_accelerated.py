@@ -8,6 +8,7 @@ from typing import Any
 import mpmath as mp
 import numpy as np
 import pytest
+from covering import covering
 from residual import residual
 from test_riemann import BETA, PATTERNS, build, flux
 
@@ -32,7 +33,7 @@ def forward(name: str, ground: str, back: bool = False) -> AcceleratedRiemann:
     return AcceleratedRiemann(carried(flat, v), *GROUNDS[ground])
 
 
-@pytest.fixture(params=[(name, ground, back) for name in PATTERNS for ground in GROUNDS for back in (False, True)])
+@pytest.fixture(params=covering(PATTERNS, GROUNDS, (False, True)), ids=str)
 def solution(request: pytest.FixtureRequest) -> AcceleratedRiemann:
     return forward(*request.param)
 

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from covering import covering
 from states import ghosted, random_states, scene_with
 
 from kinsim import Kinetic, Macroscopic, Uniform, step
@@ -30,13 +31,14 @@ def test_static_friction_is_bounded_by_dynamic() -> None:
         assert held == np.clip(slope, s - R, s + R)
 
 
-@pytest.mark.parametrize(("zeta", "delta"), GROUNDS)
-@pytest.mark.parametrize("scheme", [1, 2, 3])
-@pytest.mark.parametrize("boundary", ["periodic", "wall", "open"])
+@pytest.mark.parametrize(
+    ("scheme", "ground", "boundary"), covering([1, 2, 3], GROUNDS, ["periodic", "wall", "open"]), ids=str
+)
 def test_impulse_by_the_book(
-    scheme: int, zeta: float, delta: float | None, boundary: str, rng: np.random.Generator
+    scheme: int, ground: tuple[float, float | None], boundary: str, rng: np.random.Generator
 ) -> None:
     """J and the choice of slow cells, recomputed from the states, in all branches."""
+    zeta, delta = ground
     h, u = random_states(rng, 200, decades=0.7)
     h = np.maximum(h, 0.05)
     u[::3] *= 1e-3

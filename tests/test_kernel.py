@@ -15,7 +15,8 @@ import pytest
 
 import kinsim
 from kinsim import Blocks, Cells, ConstantSlope, Coulomb, Fixed, Frictionless, Macroscopic, Scene, simulate
-from kinsim.kernel import stamped
+from kinsim.compiled import stamped
+from kinsim.progress import COMPILING, STEP
 
 PACKAGE = Path(kinsim.__file__).parent
 
@@ -28,11 +29,11 @@ with Watched({quiet}):
 """
 """A run that tells when it compiles, and prints its last heights."""
 
-TOLD = "compiling kernels, only this once"
+TOLD = COMPILING.format(what=STEP)
 
 SCENE = Scene(Cells(0, 1, 20), Blocks((0.5,), (1, 0.5)), ConstantSlope(0.4), Coulomb(0.2), epsilon=0.4)
 
-STAMP = "from kinsim.kernel import source_stamp\nprint(source_stamp())"
+STAMP = "from kinsim.compiled import source_stamp\nprint(source_stamp())"
 
 
 def started(code: str, cache: Path | None, path: Path | None = None, **more: str) -> subprocess.Popen[str]:

@@ -63,10 +63,10 @@ def test_what_nobody_chose_is_never_compiled() -> None:
     """A kinetic run with the defaults makes the parts of its own classes only, and no array of the density."""
     program = (
         "import kinsim\n"
-        "from kinsim import kernel\n"
+        "from kinsim.compiled import apart\n"
         "scene = kinsim.load_scene('riemann')[0]\n"
         "kinsim.simulate(scene, kinsim.Kinetic(1, kinsim.Uniform(8, 3.0)), kinsim.Fixed(1e-3, 2))\n"
-        "print(*{cls.__name__ for key in kernel._apart for cls in key[2]})\n"
+        "print(*{cls.__name__ for key in apart._apart for cls in key[2]})\n"
     )
     found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     used = set(found.stdout.split())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import subprocess
 import sys
@@ -290,9 +291,9 @@ def test_every_knob_gives_a_run_or_a_sentence(scene):
                 assert not turned.refusal or knob.key in refused
 
 
-@pytest.mark.parametrize("scene", [*built_in()])
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("scene", "method"), [*zip(itertools.cycle(built_in()), [*METHODS] * 2, strict=False)])
 def test_a_saved_scene_is_the_same_scene(scene, method, tmp_path):
+    """Each scene, and each method twice."""
     slope = [("chute.zeta", 0.1)] if isinstance(Setup.of_scene(scene).file.chute, ConstantSlope) else []
     setup = setup_of(scene, *METHODS[method], *slope, ("friction.delta", 0.3), ("epsilon", 0.31))
     path = tmp_path / "saved.toml"

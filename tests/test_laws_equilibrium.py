@@ -194,12 +194,12 @@ def test_fill_of_a_face_takes_each_half_from_its_side(rng: np.random.Generator) 
 
 
 @pytest.mark.parametrize("name", EQUILIBRIA)
-@pytest.mark.parametrize("u", [1e15, 1e18, 1e20, 1e160, -1e20])
-def test_velocities_far_beyond_the_grid_are_harmless(name: EquilibriumName, u: float) -> None:
+def test_velocities_far_beyond_the_grid_are_harmless(name: EquilibriumName) -> None:
     """Nothing is written where no array is; what cannot be carried is said."""
-    h, u2, status = np.ones(2), np.full(2, u), Status.empty(2)
-    rows = fill(name, h, u2, h, u2, BETA, Grid(16, 0.1), status)
-    assert np.isfinite(rows).all()
-    assert (rows >= 0).all()
-    if name in ("matched", "entropic"):
-        assert (status.fallback == MASS_ONLY).all()
+    for u in (1e15, 1e18, 1e20, 1e160, -1e20):
+        h, u2, status = np.ones(2), np.full(2, u), Status.empty(2)
+        rows = fill(name, h, u2, h, u2, BETA, Grid(16, 0.1), status)
+        assert np.isfinite(rows).all()
+        assert (rows >= 0).all()
+        if name in ("matched", "entropic"):
+            assert (status.fallback == MASS_ONLY).all()

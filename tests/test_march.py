@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import EPS
+from covering import fewest
 from states import random_states, scene_with
 
 from kinsim import (
@@ -64,9 +65,9 @@ APART = {("scheme", "equilibrium"), ("scheme", "force")}
 """Factors that meet in other tests, as each pair of them is long to compile."""
 
 
-def covering() -> list[dict[str, Any]]:
+def cases() -> list[dict[str, Any]]:
     """Cases in which each two values of two factors meet that can, but for those apart."""
-    dice, pool, pairs = random.Random(1), [], []
+    dice, pool = random.Random(1), []
     for _ in range(1500):
         case = {name: dice.choice(values) for name, values in FACTORS.items()}
         if case["flux"] != "grid":
@@ -74,18 +75,15 @@ def covering() -> list[dict[str, Any]]:
         if case["ground"] == "smooth" and (case["scheme"][0] != "4" or case["boundary"] == "periodic"):
             case["ground"] = "flat"
         pool.append(case)
-        pairs.append(
-            {pair for pair in itertools.combinations(case.items(), 2) if (pair[0][0], pair[1][0]) not in APART}
-        )
-    missing, chosen = set().union(*pairs), []
-    while missing:  # what takes long to compile comes last
-        best = max(range(len(pool)), key=lambda i: (len(pairs[i] & missing), pool[i]["projection"] != "re-summed"))
-        chosen.append(pool[best])
-        missing -= pairs[best]
-    return chosen
+    pool.sort(key=lambda case: case["projection"] == "re-summed")  # what takes long to compile comes last
+    pairs = [
+        {pair for pair in itertools.combinations(case.items(), 2) if (pair[0][0], pair[1][0]) not in APART}
+        for case in pool
+    ]
+    return [pool[i] for i in fewest(pairs)]
 
 
-CASES = covering()
+CASES = cases()
 
 
 def scene_of(case: dict[str, Any]) -> Scene:

@@ -30,7 +30,8 @@ from kinsim import (
     Table,
     Uniform,
 )  # fmt: skip
-from kinsim.model.boundary import extend, extend_flag
+from kinsim.schemes.tile import OPEN, RING, STREAM, WALL, End
+from kinsim.solver.march import fill
 
 VALUES = [
     Cells(-1, 1, 4), ConstantSlope("pi/6"), Coulomb(0.3), Frictionless(), Blocks((0,), (1, 2)), Parabola(), Sine(),
@@ -124,24 +125,18 @@ def test_beta_and_resistance_are_derived(name: str) -> None:
 
 
 def test_ghosts() -> None:
-    """Open copies, walls mirror and turn u, periodic ends continue; a flag has no sign."""
-    for boundary, h_ghosts, u_ghosts, flags in (
-        ("open", (1, 3), (5, 7), (True, False)),
-        ("wall", (1, 3), (-5, -7), (True, False)),
-        ("periodic", (3, 1), (7, 5), (False, True)),
-        (("open", "wall"), (1, 3), (5, -7), (True, False)),
-        (("wall", "open"), (1, 3), (-5, 7), (True, False)),
+    """Two beyond each end: open ends copy, walls mirror and turn u, a ring goes on, a stream is itself."""
+    for kind, h_ghosts, q_ghosts in (
+        (OPEN, (1, 1, 3, 3), (5, 5, 7, 7)),
+        (WALL, (2, 1, 3, 2), (-6, -5, -7, -6)),
+        (RING, (2, 3, 1, 2), (6, 7, 5, 6)),
+        (STREAM, (4, 4, 4, 4), (8, 8, 8, 8)),
     ):
-        h, u, flag = (
-            np.array([9.0, 1, 2, 3, 9]),
-            np.array([9.0, 5, 6, 7, 9]),
-            np.array([False, True, False, False, True]),
-        )
-        extend(boundary, h, u)
-        extend_flag(boundary, flag)
-        np.testing.assert_array_equal(h, [h_ghosts[0], 1, 2, 3, h_ghosts[1]])
-        np.testing.assert_array_equal(u, [u_ghosts[0], 5, 6, 7, u_ghosts[1]])
-        np.testing.assert_array_equal(flag, [flags[0], True, False, False, flags[1]])
+        h, q = np.array([9.0, 9, 1, 2, 3, 9, 9]), np.array([9.0, 9, 5, 6, 7, 9, 9])
+        fill(End(kind, 4.0, 2.0), h, q, 1, 1)
+        fill(End(kind, 4.0, 2.0), h, q, 5, -1)
+        np.testing.assert_array_equal(h, [*h_ghosts[:2], 1, 2, 3, *h_ghosts[2:]])
+        np.testing.assert_array_equal(q, [*q_ghosts[:2], 5, 6, 7, *q_ghosts[2:]])
 
 
 TWO = Cells(0, 1, 2)

@@ -11,6 +11,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+from covering import covering
 from states import scene_with
 
 from kinsim import Coulomb, Fixed, InputError, Macroscopic, Scene, simulate
@@ -154,9 +155,7 @@ def test_a_law_of_ones_own_that_is_coulombs_gives_coulombs_run(mine: ModuleType)
 # ---- fluxes ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", ["closed", "masked"])
-@pytest.mark.parametrize("scheme", [1, 4])
-@pytest.mark.parametrize("boundary", ["periodic", "wall"])
+@pytest.mark.parametrize(("name", "scheme", "boundary"), covering(["closed", "masked"], [1, 4], ["periodic", "wall"]))
 def test_the_same_formula_gives_the_same_run(mine: ModuleType, name: str, scheme: int, boundary: str) -> None:
     """Whether it is compiled, or array code that is called back."""
     built_in, own = (

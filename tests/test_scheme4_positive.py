@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from repaired import EPS, EVERY, IN_CLOSED_FORM, METHODS, wild
+from covering import covering
+from repaired import EPS, EVERY, IN_CLOSED_FORM, METHODS, VARIANTS, WINGS, of_methods, wild
 from states import random_states, scene_with
 
 from kinsim import (
@@ -26,17 +27,18 @@ from kinsim import (
 )  # fmt: skip
 from kinsim.solver.solver import Solver
 
+STARTS = [(0, "wall", 0.0), (1, "periodic", 0.2), (2, "wall", 1.3), (3, "periodic", -1.3)]
+"""Seed, boundary and zeta."""
 
-@EVERY
-@pytest.mark.parametrize(
-    ("seed", "boundary", "zeta"), [(0, "wall", 0.0), (1, "periodic", 0.2), (2, "wall", 1.3), (3, "periodic", -1.3)]
-)
-def test_wild_states(method: Macroscopic | Kinetic, seed: int, boundary: str, zeta: float) -> None:
+
+@pytest.mark.parametrize(("method", "start"), of_methods(covering(WINGS, VARIANTS, STARTS)))
+def test_wild_states(method: Macroscopic | Kinetic, start: tuple[int, str, float]) -> None:
     """200 steps at the limit: mass to 1e-14, h >= 0, f >= 0, all finite, |u| <= max(|u| + c) + dt max|G|.
 
     |u| + c is that of all states that cells show, half a step later in second order, where the force acts on up to
     2 h^{n+1}, so that it counts twice.
     """
+    seed, boundary, zeta = start
     rng = np.random.default_rng(seed)
     h, u = wild(rng)
     scene = scene_with(h, u, zeta=zeta, delta=rng.choice([0.1, 0.3, 1.0]), boundary=boundary)
@@ -82,8 +84,7 @@ def test_mirrored_state_steps_to_the_mirror_image(method: Macroscopic | Kinetic,
             np.testing.assert_array_equal(one.f_force, other.f_force[::-1, ::-1])
 
 
-@EVERY
-@pytest.mark.parametrize("zeta", [0.0, 0.4])
+@pytest.mark.parametrize(("method", "zeta"), of_methods(covering(WINGS, VARIANTS, [0.4, 0.0])))
 def test_without_friction_it_is_scheme_1_bit_for_bit(method, zeta, rng: np.random.Generator) -> None:
     """Where the clip does not act: on wet ground, before slopes."""
     if method.order == 2:
@@ -127,8 +128,7 @@ def test_a_film_far_before_a_front_is_dry_ground(name: str, zeta: float, delta: 
     assert 0.05 * np.abs(ends[0] - ends[1]).sum() <= (2e-10 if "mc" in name else 1e-10)
 
 
-@EVERY
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize(("method", "seed"), of_methods(covering(WINGS, VARIANTS, range(2))))
 def test_friction_never_reverses_and_never_accelerates(method: Macroscopic | Kinetic, seed: int) -> None:
     """On flat ground q^{n+1} has the sign of the momentum that arrived, and is smaller, by dt R H at most."""
     rng = np.random.default_rng(seed)

@@ -8,13 +8,32 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import SCENES
+from covering import covering
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from repaired import CLOSED, DELTA, EVERY, IN_CLOSED_FORM, LEANING, LEANING_ANY, METHODS, leaning, pile, steps
+from repaired import (
+    CLOSED,
+    DELTA,
+    IN_CLOSED_FORM,
+    LEANING,
+    LEANING_ANY,
+    METHODS,
+    VARIANTS,
+    WINGS,
+    leaning,
+    of_methods,
+    on_piles,
+    pile,
+    steps,
+)
 from states import scene_with
 
 from kinsim import Courant, Kinetic, Macroscopic, Profile, Scene, simulate, step
 from kinsim.clock import Replay
+
+EVERY_LEANING = pytest.mark.parametrize(
+    ("method", "zeta", "boundary", "seed"), of_methods(on_piles(LEANING, WINGS, VARIANTS))
+)
 
 
 def keeps(scene: Scene, method: Macroscopic | Kinetic, count: int) -> bool:
@@ -23,22 +42,24 @@ def keeps(scene: Scene, method: Macroscopic | Kinetic, count: int) -> bool:
     return bool((run.h == scene.initial()[0]).all() and (run.q == 0).all())
 
 
-@IN_CLOSED_FORM
-@LEANING_ANY
+@pytest.mark.parametrize(
+    ("method", "zeta", "boundary", "seed"), of_methods(on_piles(LEANING_ANY, ["closed"], VARIANTS))
+)
 def test_rest_is_bitwise(method: Macroscopic, zeta: float, boundary: str, seed: int) -> None:
     """Random piles that take 100 percent of what friction can hold, 2000 steps."""
     assert keeps(pile(zeta, boundary, seed), method, 2000)
 
 
-@EVERY
-@LEANING
+@EVERY_LEANING
 def test_rest_is_bitwise_in_both_wings(method: Macroscopic | Kinetic, zeta: float, boundary: str, seed: int) -> None:
     """The same with densities of 32 nodes."""
     assert keeps(pile(zeta, boundary, seed), method, 200)
 
 
-@pytest.mark.parametrize("name", ["closed, first", "closed, second", "matched, first", "fitted, second, mc"])
-@LEANING
+@pytest.mark.parametrize(
+    ("name", "zeta", "boundary", "seed"),
+    on_piles(LEANING, ["closed, first", "closed, second", "matched, first", "fitted, second, mc"]),
+)
 def test_a_disturbed_pile_stops_again_and_stays(name: str, zeta: float, boundary: str, seed: int) -> None:
     """Noise of 1e-8 in h and u. Above the friction angle a film that spilled onto bare ground (< 1e-12) runs on.
 
@@ -58,9 +79,10 @@ def test_a_disturbed_pile_stops_again_and_stays(name: str, zeta: float, boundary
     assert np.abs(run.h[-1] - h).max() <= 1e-6
 
 
-@pytest.mark.parametrize("name", ["closed, first", "closed, second", "fitted, first"])
-@pytest.mark.parametrize("lowest", [0.0, 0.05, 1.0])
-@pytest.mark.parametrize("zeta", [0.8, 1.0, -1.0, 1.2])
+@pytest.mark.parametrize(
+    ("name", "lowest", "zeta"),
+    covering(["closed, first", "closed, second", "fitted, first"], [0.0, 0.05, 1.0], [0.8, 1.0, -1.0, 1.2]),
+)
 def test_a_pile_that_leans_on_a_steep_chute_stops_again_and_stays(name: str, lowest: float, zeta: float) -> None:
     """A third of the faces and then all are at the bound where the pile would begin to move downhill.
 
@@ -92,8 +114,7 @@ def test_what_creeps_downhill_moves_mass_downhill(ratio: float, heights: list[fl
     assert now.flux[0, 1] > 0.0
 
 
-@EVERY
-@LEANING
+@EVERY_LEANING
 def test_one_face_five_percent_too_steep_starts(method, zeta: float, boundary: str, seed: int) -> None:
     """Wherever it is."""
     scene = pile(zeta, boundary, seed)
@@ -108,10 +129,10 @@ def test_one_face_five_percent_too_steep_starts(method, zeta: float, boundary: s
         assert (run.h[-1] != steep).any()
 
 
-@EVERY
-@pytest.mark.parametrize(("zeta", "film"), [(0.15, 0.0), (-0.28, 0.2)])
-def test_closed_masses_stop(method: Macroscopic | Kinetic, zeta: float, film: float) -> None:
+@pytest.mark.parametrize(("method", "ground"), of_methods(covering(WINGS, VARIANTS, [(0.15, 0.0), (-0.28, 0.2)])))
+def test_closed_masses_stop(method: Macroscopic | Kinetic, ground: tuple[float, float]) -> None:
     """Below the friction angle, wet and dry: u is exactly 0 at the end, and stays."""
+    zeta, film = ground
     x = (np.arange(48) + 0.5) / 48
     h = np.where(np.abs(x - 0.5) < 0.15, 1.0, film)
     scene = scene_with(h, 0.5 * (h > 0.5), zeta=zeta, delta=DELTA, boundary="wall")

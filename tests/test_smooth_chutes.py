@@ -149,25 +149,18 @@ def test_mirror(method: Kinetic | Macroscopic) -> None:
     np.testing.assert_allclose(one.q[-1], -two.q[-1, ::-1], rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize("eta", [0.0, 1.0, 100.0, 1e4])
 @pytest.mark.parametrize("name", ["closed", "closed, reflect", "closed, order 2"])
-def test_friction_never_reverses_and_never_accelerates(name: str, eta: float) -> None:
+def test_friction_never_reverses_and_never_accelerates(name: str) -> None:
     """One uniform stream at the bottom of a bowl, where gravity pulls nowhere: it slows, and does not turn."""
-    n = 24
-    scene = Scene(
-        Cells(-0.012, 0.012, n),
-        Profile(np.ones(n), np.full(n, 3.0)),
-        SmoothChute(Arc(5.0), eta),
-        Coulomb(0.4),
-        "open",
-        0.4,
-    )
-    run = kinsim.simulate(scene, METHODS[name], Fixed(1e-4, 400), save_every=1)
-    middle = run.u[:, n // 2 - 1 : n // 2 + 1]
-    pull = 1e-4 * np.abs(np.sin(0.012 / 5.0)) * np.arange(401)
-    assert (middle >= -pull[:, None]).all()
-    assert (np.diff(middle, axis=0) <= 1e-12 + 1e-4 * 0.012).all()
-    assert middle[-1].max() < 3.0 - 0.5 * 0.04 * math.tan(0.4) * min(1.0 + eta / 5.0, 30.0)
+    n, pull = 24, 1e-4 * np.abs(np.sin(0.012 / 5.0)) * np.arange(401)
+    cells, heap = Cells(-0.012, 0.012, n), Profile(np.ones(n), np.full(n, 3.0))
+    for eta in (0.0, 1.0, 100.0, 1e4):
+        scene = Scene(cells, heap, SmoothChute(Arc(5.0), eta), Coulomb(0.4), "open", 0.4)
+        run = kinsim.simulate(scene, METHODS[name], Fixed(1e-4, 400), save_every=1)
+        middle = run.u[:, n // 2 - 1 : n // 2 + 1]
+        assert (middle >= -pull[:, None]).all()
+        assert (np.diff(middle, axis=0) <= 1e-12 + 1e-4 * 0.012).all()
+        assert middle[-1].max() < 3.0 - 0.5 * 0.04 * math.tan(0.4) * min(1.0 + eta / 5.0, 30.0)
 
 
 @pytest.mark.parametrize("k", [0.02, 1.0])

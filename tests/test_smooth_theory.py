@@ -147,20 +147,20 @@ def test_states_have_both_signs_of_B_and_zero() -> None:
     assert pytest.approx(0.0, abs=1e-17) == make(STATES[-1]).BS
 
 
-@pytest.mark.parametrize("share", [0.5, 1 / 3, 1.0])
 @pytest.mark.parametrize("state", STATES)
-def test_the_map_is_the_flow_of_the_force(state: tuple[float, ...], share: float) -> None:
+def test_the_map_is_the_flow_of_the_force(state: tuple[float, ...]) -> None:
     r, v, slope, pull, dt = state
-    start = v + np.sqrt(2 * r) * np.linspace(-1, 1, 5)
-    flow = solve_ivp(
-        lambda _, y: quadratic(y, r, v, slope, pull, share), (0, dt), start, "DOP853", rtol=1e-13, atol=1e-14
-    )
-    phi = make(state, share)
-    assert phi(start) == pytest.approx(flow.y[:, -1], rel=0, abs=1e-11)
-    assert phi.inverse(phi(start)) == pytest.approx(start, rel=0, abs=4e-15)
-    assert pytest.approx(1.0, abs=4e-16) == phi.C**2 + phi.S * phi.BS
-    tiny = 1e-6
-    assert phi.slope(start) == pytest.approx((phi(start + tiny) - phi(start - tiny)) / (2 * tiny), rel=1e-8)
+    start, tiny = v + np.sqrt(2 * r) * np.linspace(-1, 1, 5), 1e-6
+    for share in (0.5, 1 / 3, 1.0):
+        flow = solve_ivp(
+            lambda _, y, share: quadratic(y, r, v, slope, pull, share),
+            (0, dt), start, "DOP853", args=(share,), rtol=1e-13, atol=1e-14,
+        )  # fmt: skip
+        phi = make(state, share)
+        assert phi(start) == pytest.approx(flow.y[:, -1], rel=0, abs=1e-11)
+        assert phi.inverse(phi(start)) == pytest.approx(start, rel=0, abs=4e-15)
+        assert pytest.approx(1.0, abs=4e-16) == phi.C**2 + phi.S * phi.BS
+        assert phi.slope(start) == pytest.approx((phi(start + tiny) - phi(start - tiny)) / (2 * tiny), rel=1e-8)
 
 
 @pytest.mark.parametrize("state", STATES)

@@ -9,8 +9,8 @@ import numpy as np
 
 from ..arrays import Array
 from ..checkpoint import Kept
+from ..compiled import kernel
 from ..errors import InputError
-from ..kernel import kernel
 from ..kinetic.velocity import Grid
 from ..model.ground import Flat
 from ..scene import Scene

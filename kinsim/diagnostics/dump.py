@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import numpy as np
@@ -10,8 +10,11 @@ from pydantic import Field
 
 from ..arrays import Array
 from ..checkpoint import Kept
+from ..clock import AnyClock, Fixed
 from ..errors import InputError
-from ..kinetic.velocity import Grid
+from ..kinetic.velocity import Fitted, Grid
+from ..memory import require
+from ..method import Kinetic, Macroscopic
 from ..value import Number, Whole, value
 from .ledger import EVERY_COLUMN
 from .observer import Observer
@@ -154,3 +157,37 @@ def _inside(places: Array, window: tuple[float, float] | None) -> slice:
         return slice(None)
     begin, end = np.searchsorted(places, window)
     return slice(int(begin), int(end))
+
+
+def require_density(method: Kinetic | Macroscopic) -> Kinetic:
+    """The method, if it carries a density on a velocity grid.
+
+    Raises:
+        InputError: It does not.
+    """
+    if not isinstance(method, Kinetic) or isinstance(method.velocity, Fitted):
+        raise InputError("dumps and causes need a density on a velocity grid: take Kinetic with Uniform or Window")
+    return method
+
+
+def recorders(dumps: Sequence[Dump], scene: Scene, method: Kinetic | Macroscopic, clock: AnyClock) -> list[Recorder]:
+    """One observer for each dump.
+
+    Raises:
+        InputError: Two have one name, the method has no such density, or they do not fit into memory.
+    """
+    names = [dump.name for dump in dumps]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"two dumps are called {name!r}; give each a name of its own")
+    if not dumps:
+        return []
+    require_density(method)
+    if any(dump.stage == "held" for dump in dumps) and (method.scheme, method.order, method.statics) != (4, 1, "hold"):
+        raise InputError('a dump of the stage "held" needs faces that hold: take scheme 4 of order 1')
+    made = [Recorder(dump, scene) for dump in dumps]
+    for recorder in made:
+        rows = recorder.rows(clock.steps if isinstance(clock, Fixed) else 1)
+        width = getattr(getattr(method, "velocity", None), "count", 2)
+        require(rows * 8.0 * recorder.width * width, f"{rows} rows of the dump {recorder.dump.name!r}")
+    return made

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from ..clock import AnyClock, Courant, Fixed
+from ..solver.asked import largest_sum
 from ..solver.march import AT_REST as RESTS
 from ..solver.march import (
     BEYOND,
@@ -75,12 +76,14 @@ def ending(block: Block, clock: AnyClock) -> tuple[VerdictKind, str, int | None]
     if reason == LIFTED:
         return "lifted-off", LIFTED_WORDS, None
     if reason == TOO_SHORT:
-        asked = f"velocities up to {solver.quickest:.3g} ask for steps of dt = {solver.attempted:.3g}"
+        asked = (
+            f"velocities up to {max(solver.counted, solver.fastest):.3g} ask for steps of dt = {solver.attempted:.3g}"
+        )
         return "too-many-steps", f"{asked}, too short to come to t = {end:g}; stopped", None
     if isinstance(clock, Courant) and block.step >= clock.most:
         return (
             "too-many-steps",
-            f"velocities up to {solver.quickest:.3g} ask for more than {clock.most} steps; stopped",
+            f"velocities up to {max(solver.counted, solver.fastest):.3g} ask for more than {clock.most} steps; stopped",
             None,
         )
     if reason == COURANT:
@@ -141,7 +144,7 @@ def fault(solver: Solver) -> tuple[str, int | None]:
     if not float((speed + c).max()) <= FASTEST_OF_ALL:
         return f"a velocity is beyond {FASTEST_OF_ALL:g}", int(np.argmax(speed))
     most = np.maximum(np.abs(h), np.abs(q))
-    if not h.size * float(most.max()) < solver.room:
+    if not h.size * float(most.max()) < largest_sum(solver):
         return "the mass or momentum of all cells is not finite, or not beside the mass of the start", int(
             np.argmax(most)
         )

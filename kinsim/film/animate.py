@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ..read import check, read_keys
 from ..run import Run
-from ..simulate import Progress
+from ..simulation import Progress
 from ..store import replacing
 from ..value import Whole, checked
 from .reel import Frames, Reel, reel_of

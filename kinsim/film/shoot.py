@@ -13,7 +13,8 @@ from ..method import Kinetic
 from ..overview import first_steps
 from ..read import SceneFile
 from ..run import Run
-from ..simulate import Progress, simulate
+from ..simulate import simulate
+from ..simulation import Progress
 from .reel import carries
 
 

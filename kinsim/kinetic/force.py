@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..kernel import formula, kernel, question, routine
+from ..compiled import formula, kernel, question, routine
 from ..method import ForceName
 from .equilibrium.questions import both_sides
 

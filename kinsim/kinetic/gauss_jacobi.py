@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arrays import Array
-from ..kernel import formula
+from ..compiled import formula
 from ..macroscopic.closed_form import TINY, ahead
 
 SIZES = (2, 3, 4, 6, 8, 16, 32, 64)

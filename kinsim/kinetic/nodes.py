@@ -6,7 +6,7 @@ import math
 from typing import Any, NamedTuple
 
 from ..arrays import Array
-from ..kernel import formula, routine
+from ..compiled import formula, routine
 from ..schemes.bed import beta_of
 from ..schemes.questions import beta_shown, capped, is_sloped
 from ..schemes.tile import N1, N2, P1, P2, H, U

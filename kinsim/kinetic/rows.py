@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..kernel import Apart, kernel, perform, question, routine, short_question
+from ..compiled import Apart, kernel, perform, question, routine, short_question
 from ..schemes.bed import beta_of
 from ..schemes.questions import (
     acts_before,

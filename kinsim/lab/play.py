@@ -19,7 +19,8 @@ from ..model.ground import Flat
 from ..read import SceneFile
 from ..run import Verdict
 from ..scene import Scene
-from ..simulate import Simulation, find_bound
+from ..simulate import find_bound
+from ..simulation import Simulation
 from ..solver.density import Density
 from ..solver.solver import Solver
 from ..solver.stages import Stages

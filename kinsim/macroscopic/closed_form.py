@@ -16,7 +16,7 @@ import math
 from typing import Any, NamedTuple
 
 from ..arrays import Array
-from ..kernel import formula, generic, kernel
+from ..compiled import formula, generic, kernel
 from ..schemes.questions import leave_both
 
 TINY = 2.2250738585072014e-308

@@ -17,8 +17,8 @@ import numpy as np
 from numba import types
 from numba.core import config
 
+from ..compiled import question, short_question
 from ..errors import InputError
-from ..kernel import question, short_question
 from ..schemes.bed import face
 from ..schemes.formulas import drained
 from ..schemes.questions import rows

@@ -14,7 +14,8 @@ from ..interrupt import unless_interrupted
 from ..method import Kinetic, Macroscopic
 from ..run import Run
 from ..scene import Scene
-from ..simulate import Progress, simulate
+from ..simulate import simulate
+from ..simulation import Progress
 from .seams import seams as stage_by_stage
 
 if TYPE_CHECKING:

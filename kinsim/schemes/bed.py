@@ -17,7 +17,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..arrays import Array
-from ..kernel import short_question
+from ..compiled import short_question
 
 LEAST = 1e-100
 """Laws of friction are never asked about lower heights, whose squares would underflow."""

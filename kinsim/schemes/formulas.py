@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from ..kernel import formula
+from ..compiled import formula
 
 DRY = 2.2250738585072014e-308
 """The smallest height whose velocity has all its digits, the smallest normal number; it scales with no unit."""

@@ -13,8 +13,8 @@ from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any, NamedTuple
 
+from ..compiled import short_question
 from ..errors import InputError
-from ..kernel import short_question
 from .bed import LEAST
 
 FORMULAS = ("resistance", "after", "brought", "brought_midway", "holds", "grip")

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..arrays import Array
-from ..kernel import question, routine, short_question
+from ..compiled import question, routine, short_question
 from .bed import beta_of
 from .friction import brought
 from .tile import N1, N2, P1, P2, Ground, H, Place, U
@@ -97,12 +97,6 @@ def settle(
 ) -> float:
     """Settle h^{n+1} and qhat, and write J; returns the mass made of heights below 0, per dx."""
     raise NotImplementedError
-
-
-@short_question
-def drains(scheme: Any) -> bool:
-    """Whether the outflow of a cell is cut to what it has."""
-    return False
 
 
 # what the density asks, of cell k of a tile

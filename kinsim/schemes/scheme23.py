@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..kernel import short_question
+from ..compiled import short_question
 from .bed import LEAST, beta_of, normal, pull
 from .formulas import acceleration, is_slow, static_acceleration, updated
 from .friction import grip, resistance

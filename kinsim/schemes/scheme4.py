@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..kernel import question, routine
+from ..compiled import question, routine
 from .bed import beta_of, face, normal, pull, uneven
 from .formulas import (
     DRY,

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..arrays import Array
-from ..kernel import routine
+from ..compiled import routine
 
 TILE = 256
 """Cells of a tile."""

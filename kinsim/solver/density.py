@@ -18,8 +18,9 @@ from ..kinetic.velocity import Grid, Uniform, Window
 from ..method import Kinetic
 from ..schemes.questions import comes_back, has_own_density
 from ..schemes.tile import TILE, Place
+from .asked import strongest
 from .march import REACH
-from .model import model_of, strongest
+from .model import model_of
 
 if TYPE_CHECKING:
     from .stages import Stages

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..kernel import formula, greatest, kernel, perform, routine
+from ..compiled import formula, greatest, kernel, perform, routine
 from ..kinetic.nodes import outermost
 from ..schemes.bed import beta_of
 from ..schemes.formulas import updated

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
+from ..compiled import Apart, answers, plain, routine
 from ..errors import InputError
-from ..kernel import Apart, answers, plain, routine
 from ..kinetic.equilibrium import EQUILIBRIA, weights
 from ..kinetic.force import FORCES, After, Before, Unforced
 from ..kinetic.gauss_jacobi import gauss_jacobi
@@ -116,17 +115,6 @@ def _bed(ground: Flat | Smooth, boundary: Boundary) -> Plane | Curve:
         cells(ground.pull), cells(ground.cos), cells(ground.bend), beta,
         faces(ground.pull_face), faces(ground.cos_face), faces(face_beta), tilt, *uneven,
     )  # fmt: skip
-
-
-def strongest(scene: Scene) -> float:
-    """The largest acceleration |sin zeta| + R."""
-    return float(np.max(np.abs(scene.pull) + scene.resistance))
-
-
-def falling(scene: Scene, number: float) -> float:
-    """The speed that keeps a grain which starts to slide from passing more than `number` cells in a step."""
-    drive = max(float(np.max(np.abs(scene.pull) - scene.resistance)), 0.0)
-    return math.sqrt(0.5 * number * scene.cells.dx * drive)
 
 
 @routine()

@@ -15,10 +15,10 @@ from ..kinetic.rows import Carrier
 from ..kinetic.velocity import Fitted, Grid, Uniform, Window
 from ..memory import require
 from ..method import Kinetic, Macroscopic
-from ..model.ground import Smooth
 from ..scene import Scene
 from ..schemes.bed import Curve
 from ..schemes.tile import SIZE, TILE, Model
+from .asked import asked_of
 from .march import (
     BEFORE,
     BEYOND,
@@ -33,7 +33,6 @@ from .march import (
     LOST_ALL,
     NOT_FINITE,
     OUTSIDE,
-    ROUNDING,
     TICKS,
     TIGHT,
     Asked,
@@ -42,13 +41,8 @@ from .march import (
     march,
     speed_of,
 )  # fmt: skip
-from .model import falling, model_of, parts_of, shape_of, strongest
+from .model import model_of, parts_of, shape_of
 from .stages import Stages
-
-SHORTEST = 1e-9
-"""Steps shorter than this share of the whole time are not worth taking."""
-
-LARGEST = float(np.finfo(float).max)
 
 KEPT, SEEN = 15, 22
 """What `march` keeps of each tile, and sees of a run."""
@@ -120,12 +114,8 @@ class Solver:
     def _make(self, reach: float) -> None:
         """The model, with velocity cells for velocities up to `reach`."""
         velocity = self.method.velocity if isinstance(self.method, Kinetic) else None
-        self._velocity = velocity if isinstance(velocity, Uniform | Window) else None
-        self.grid: Grid | None = None
-        if isinstance(velocity, Uniform):
-            self.grid = velocity.grid(reach)
-        elif isinstance(velocity, Window):
-            self.grid = velocity.grid(2.0 * reach)
+        self.velocity = velocity if isinstance(velocity, Uniform | Window) else None
+        self.grid = self.velocity.grid(2.0 * reach) if self.velocity else None
         if self.grid is not None:
             entries, densities = f"{self._nx} x {self.grid.count} entries", 3 if is_stored(self.method) else 1
             require(8.0 * densities * self._nx * self.grid.count, f"{densities} densities of {entries}")
@@ -178,29 +168,13 @@ class Solver:
         streams = speed_of(shape.left, shape.beta_left), speed_of(shape.right, shape.beta_right)
         return float(count_velocity(shape, max(self.fastest, *streams)))
 
-    @property
-    def quickest(self) -> float:
-        """The velocity from which a Courant number makes steps."""
-        return max(self.counted, self.fastest)
-
-    @property
-    def room(self) -> float:
-        """How large sums may become beside the mass in the beginning, to which they are compared."""
-        return LARGEST * min(self.first_mass or 1.0, 1.0) / (8.0 * max(self.scene.cells.dx, 1.0))
-
-    def ended(self, clock: AnyClock) -> bool:
-        """Whether the clock has no step left."""
-        if isinstance(clock, Courant):
-            return self.t >= clock.end
-        return bool(self.seen[TICKS] >= clock.ticks and self.seen[LEFT_OVER] == 0.0)
-
     def march(self, clock: AnyClock, most: int, until: float = math.inf, past: float = math.inf) -> Block:
         """At most `most` steps, to land on the time `until`, and no further than the first one at or after `past`."""
         planned = np.array(clock.dts) if isinstance(clock, Replay) else np.empty(0)
         if not isinstance(clock, Courant):
             most = min(most, int(clock.ticks - self.seen[TICKS]) + int(self.seen[LEFT_OVER] > 0.0))
         until = min(until, clock.end) if isinstance(clock, Courant) else until  # the others end after so many steps
-        asked = self._asked(clock, until, past)
+        asked = asked_of(self, clock, until, past)
         dts, done, reason = np.empty(most), 0, COUNTED
         while done < most and reason == COUNTED:
             steps, reason = self._go(asked, planned, most - done, self._room, dts[done:])
@@ -209,8 +183,8 @@ class Solver:
                 steps, reason = self._go_tight(asked, planned, dts[done:])
                 done += steps
             if reason == OUTSIDE and self._follow(float(self.seen[BEYOND])):
-                asked, reason = self._asked(clock, until, past), COUNTED
-        return Block(reason, dts[:done].copy(), self.step, self.t, self.h, self.q, self.ended(clock), self)
+                asked, reason = asked_of(self, clock, until, past), COUNTED
+        return Block(reason, dts[:done].copy(), self.step, self.t, self.h, self.q, ended(clock, self), self)
 
     def _go(
         self, asked: Asked, planned: Array, most: int, rooms: Array, dts: Array, whole: bool = False
@@ -238,33 +212,9 @@ class Solver:
             self.seen[LOST_ALL] += self.scene.cells.dx * (density.lost + density.cut)
         return steps, reason
 
-    def _asked(self, clock: AnyClock, until: float, past: float) -> Asked:
-        nan = math.nan
-        number = clock.number if isinstance(clock, Courant) else 0.0
-        grid, velocity = self.grid, self._velocity
-        bound, tight, stops = math.inf, math.inf, 1.0
-        if grid is not None:
-            bound = grid.bound
-            if isinstance(velocity, Uniform):
-                stops = float(velocity.beyond == "stop")
-                tight = bound - 2.0 * grid.dxi
-        slow = 1e-3 * grid.dxi if grid is not None else 0.0
-        lifts = 0.0
-        if isinstance(self.scene.ground, Smooth) and self.scene.ground.bends:
-            lifts = 2.0 if self.scene.chute.lifting == "stop" else 1.0  # type: ignore[union-attr]
-        return Asked(
-            dt=clock.dt if isinstance(clock, Fixed) else nan, number=number,
-            falling=falling(self.scene, number) if number else 0.0,
-            shortest=SHORTEST * clock.end if number else 0.0,
-            limit=math.inf if self.force else self.limit * (1.0 + ROUNDING),
-            room=self.room, bound=bound, stops=stops, pull=strongest(self.scene), tight=tight,
-            still=0.0 if grid is not None else 1e-12, still_per_h=slow, stop_at_rest=float(clock.stop_at_rest),
-            until=until, past=past, lifts=lifts,
-        )  # fmt: skip
-
     def _follow(self, reach: float) -> bool:
         """Make a window that follows for velocities up to `reach`; False if the velocity cells are fixed."""
-        if not isinstance(self._velocity, Window):
+        if not isinstance(self.velocity, Window):
             return False
         self.seen[BEYOND] = 0.0
         report = self.model.flux.report
@@ -275,29 +225,31 @@ class Solver:
 
     def warm_up(self) -> None:
         """Compile what this run needs, so that it does not count as running."""
-        self._go(self._asked(Fixed(1.0, 1), math.inf, math.inf), np.empty(0), 0, self._room, np.empty(1))
+        self._go(asked_of(self, Fixed(1.0, 1)), np.empty(0), 0, self._room, np.empty(1))
         if self.grid is not None:
             self.stages(self.h, self.q, 1e-3 * self.scene.cells.dx).density.f  # noqa: B018
 
     def stages(self, h: Array, q: Array, dt: float, t: float = 0.0, force: bool = True) -> Stages:
         """One step from (h, q) at time t, every stage kept: a march of one step whose tiles have a room each."""
+        other = self._aside(force)
+        other.put(h, q)
+        report = self.model.flux.report.copy() if self.grid is not None else np.empty(0)
+        rooms = np.zeros((self._tiles, SIZE))
+        asked = asked_of(other, Fixed(dt, 1))._replace(bound=math.inf, room=math.inf)
+        other._go(asked, np.empty(0), 1, rooms, np.empty(1), whole=True)
+        if self.grid is not None:
+            self.model.flux.report[:] = report
+        return Stages(other, rooms, dt, t)
+
+    def _aside(self, force: bool) -> Solver:
+        """A solver with the same model, and a state of its own."""
         other = Solver.__new__(Solver)
         other.__dict__ |= self.__dict__
         other._states = [(np.zeros(self._nx + 4), np.zeros(self._nx + 4)) for _ in range(3)]
         other._kept, other.seen, other.force = np.zeros((self._tiles, KEPT)), fresh_seen(), force
         if is_stored(self.method):
             other._take(model_of(self.scene, self.method, self.grid))
-        other.put(h, q)
-        rooms = np.zeros((self._tiles, SIZE))
-        asked = other._asked(Fixed(dt, 1), math.inf, math.inf)._replace(bound=math.inf, room=math.inf)
-        report = other.model.flux.report.copy() if self.grid is not None else np.empty(0)
-        march(
-            other._shape, other._rows, self._lifting, asked, np.empty(0), 1, tuple(other._states), rooms, other._kept,
-            np.empty(1), other.seen, True, True,
-        )  # fmt: skip
-        if self.grid is not None:
-            other.model.flux.report[:] = report
-        return Stages(other, rooms, dt, t)
+        return other
 
     @property
     def last_stages(self) -> Stages:
@@ -323,11 +275,18 @@ class Solver:
         for (h, q), values in zip(self._states, (kept["state"], kept["before"]), strict=False):
             h[2:-2], q[2:-2] = values
         if self.grid is not None:
-            if isinstance(self._velocity, Window):
+            if isinstance(self.velocity, Window):
                 self.grid = Grid(int(kept["cells"]), self.grid.dxi)
                 self._take(model_of(self.scene, self.method, self.grid))
             self.model.flux.report[:] = kept["report"]
         self._fresh, self._stages = True, None
+
+
+def ended(clock: AnyClock, solver: Solver) -> bool:
+    """Whether the clock has no step left."""
+    if isinstance(clock, Courant):
+        return solver.t >= clock.end
+    return bool(solver.seen[TICKS] >= clock.ticks and solver.seen[LEFT_OVER] == 0.0)
 
 
 def is_stored(method: Kinetic | Macroscopic) -> bool:

@@ -19,7 +19,8 @@ from ..clock import Replay
 from ..diagnostics.ledger import EVERY_COLUMN
 from ..errors import InputError
 from ..run import Run
-from ..simulate import Progress, simulate
+from ..simulate import simulate
+from ..simulation import Progress
 from ..store import replacing
 from .member import ONCE, Member
 

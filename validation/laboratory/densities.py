@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from kinsim.kernel import generic
+from kinsim.compiled import generic
 from kinsim.kinetic.force import FORCES, push
 from kinsim.method import ForceName
 

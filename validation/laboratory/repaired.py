@@ -66,7 +66,7 @@ def steps(
     solver.put(h, q)
     solver.warm_up()
     for _ in range(count):
-        speed = solver.quickest
+        speed = max(solver.counted, solver.fastest)
         dt = min(number * scene.cells.dx / speed, scene.cells.dx) if speed > 0.0 else scene.cells.dx
         taken = solver.march(Fixed(dt, 10**9), 1).dts.size > 0
         yield (solver.h.copy(), solver.q.copy(), dt) if taken else (h + np.nan, q + np.nan, dt)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...kernel import at, formula, kernel, routine
+from ...compiled import at, formula, kernel, routine
 from ...macroscopic.closed_form import arc
 
 

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from ...arrays import Array
-from ...kernel import routine
+from ...compiled import routine
 from .few_nodes import few_nodes
 from .status import CONVERGED
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ...arrays import Array
-from ...kernel import routine
+from ...compiled import routine
 from .status import MASS_ONLY, TWO_MOMENTS, TWO_NODES
 
 

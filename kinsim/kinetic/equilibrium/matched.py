@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
-from ...kernel import routine
+from ...compiled import routine
 from .averages import average
 from .few_nodes import few_nodes
 from .status import CONVERGED

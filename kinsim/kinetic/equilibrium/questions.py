@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...kernel import generic, question, routine, short_question
+from ...compiled import generic, question, routine, short_question
 
 
 @question
