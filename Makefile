@@ -45,7 +45,7 @@ check: .venv/installed
 	$(BIN)/mypy
 
 test: check
-	$(BIN)/pytest --quiet --numprocesses 2
+	$(BIN)/pytest --quiet --numprocesses 2 --dist worksteal
 
 bench: .venv/installed
 	$(BIN)/python benchmarks/run.py

@@ -14,9 +14,9 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn
 PATIENCE = 1.0
 """Seconds before a bar shows."""
 
-COMPILING = "compiling {what}: usually 5 to 20 s in all, and kept for later runs"
+COMPILING = "compiling {what}: usually 5 to 20 s, kept for later runs"
 
-STEP = "the time step of this method"
+STEP = "the step of this method"
 
 PARTS = {
     "march": "the time loop", "judged": "what holds at faces", "shown": "slopes", "met": "face states",

@@ -120,7 +120,7 @@ def test_an_edit_of_a_kernel_source_changes_the_stamp_and_no_other_does(tmp_path
         "schemes/formulas.py",
         "schemes/tile.py",
         "macroscopic/closed_form.py",
-        "kernel.py",
+        "compiled/kernel.py",
         "solver/march.py",
     ):
         file = source / "kinsim" / name
