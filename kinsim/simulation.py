@@ -50,7 +50,7 @@ class Simulation:
         self.scene, self.method, self.clock, self.cadence, self.force = scene, method, clock, cadence, force
         self.dumps = recorders(dumps, scene, method, clock)
         self.causes = Causes(scene, require_density(method).order) if causes else None
-        self.history = History(cadence, Ledger(scene, method, force), self.causes)
+        self.history = History(cadence, Ledger(scene, method), self.causes)
         self.own = [adopt(observer) for observer in observers]
         self.observers: list[Observer] = [*([self.causes] if self.causes else []), self.history, *self.dumps, *self.own]
         self.solver = Solver(scene, method, force)

@@ -100,7 +100,7 @@ class History(Observer):
         self._save(solver.t, solver.h, solver.q)
 
     def next_step(self, step: int) -> float:
-        every = 1 if self.ledger.every_step else self.cadence.every
+        every = self.cadence.every
         return step + every - step % every if every else math.inf
 
     def next_time(self, t: float) -> float:

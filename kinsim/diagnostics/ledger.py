@@ -16,6 +16,7 @@ from ..mean import mean_velocity
 from ..method import Kinetic, Macroscopic
 from ..scene import Scene
 from ..solver.march import (
+    F_MIN,
     H_MIN,
     IN_LEFT_ALL,
     IN_RIGHT_ALL,
@@ -69,19 +70,16 @@ class Ledger:
     """Makes a row of what was seen since the row before.
 
     Attributes:
-        every_step: Whether every step has to be looked at: f may become negative, and its least entry is a column.
         least_height, least_density, worst_courant: Over all steps.
     """
 
-    def __init__(self, scene: Scene, method: Kinetic | Macroscopic, force: bool) -> None:
+    def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
         self._scene = scene
         on_grid = isinstance(method, Kinetic) and not isinstance(method.velocity, Fitted)
         self._density = on_grid
-        self.every_step = on_grid and (force or not keeps_positive(method))
         self._lifts = lifts(scene)
         self._rows: list[dict[str, float]] = []
         self.least_height, self.least_density, self.worst_courant = math.inf, 0.0, 0.0
-        self._f_min = math.inf
 
     def start(self, solver: Solver) -> None:
         """The row of the initial state."""
@@ -98,9 +96,7 @@ class Ledger:
         seen = block.solver.seen
         self.least_height = min(self.least_height, float(seen[H_MIN]))
         self.worst_courant = max(self.worst_courant, float(seen[WORST]))
-        if self.every_step:
-            self._f_min = min(self._f_min, float(block.stages.density.f.min()))
-            self.least_density = min(self.least_density, self._f_min)
+        self.least_density = min(self.least_density, float(seen[F_MIN]))
 
     def save(self, block: Block) -> None:
         """Make a row of what was seen since the row before."""
@@ -108,7 +104,7 @@ class Ledger:
         row = self._row(solver, self._scene.cells.dx * held(stages))
         if self._density:
             row |= departure(stages.density, block.h, block.q, self._scene.cells.dx)
-            least = min(self._f_min, float(stages.density.f.min()))
+            least = min(float(solver.seen[F_MIN]), float(stages.density.f.min()))
             self.least_density = min(self.least_density, least)
             row |= {"f_min": least, **fallen(solver.model.flux.report)}
         self._rows.append(row | self._lift_row(solver))
@@ -122,14 +118,14 @@ class Ledger:
         """The rows so far, and what was noted since the last one."""
         names = list(self._rows[0])
         rows = np.array([[row[name] for name in names] for row in self._rows])
-        since = np.array([self.least_height, self.least_density, self.worst_courant, self._f_min])
+        since = np.array([self.least_height, self.least_density, self.worst_courant])
         return {"names": np.array(names), "rows": rows, "since": since}
 
     def restore(self, kept: Kept) -> None:
         """Go on from there."""
         names = kept["names"].tolist()
         self._rows = [dict(zip(names, row, strict=True)) for row in kept["rows"].tolist()]
-        self.least_height, self.least_density, self.worst_courant, self._f_min = kept["since"].tolist()
+        self.least_height, self.least_density, self.worst_courant = kept["since"].tolist()
 
     def _row(self, solver: Solver, held_back: float) -> dict[str, float]:
         seen, dx = solver.seen, self._scene.cells.dx
@@ -147,15 +143,9 @@ class Ledger:
         return lift_row(self._scene, solver.seen)
 
     def _forget(self, solver: Solver) -> None:
-        solver.seen[[H_MIN, U_MAX, WORST, LIFT_MOST]] = math.inf, 0.0, 0.0, 0.0
-        self._f_min = math.inf
+        solver.seen[[H_MIN, U_MAX, WORST, LIFT_MOST, F_MIN]] = math.inf, 0.0, 0.0, 0.0, math.inf
         if self._density:
             solver.model.flux.report[4:] = 0.0
-
-
-def keeps_positive(method: Kinetic | Macroscopic) -> bool:
-    """Whether f >= 0 is proved under (28): one flux at a face of what stands there, and a force that moves f."""
-    return method.scheme in (1, 4) and (isinstance(method, Macroscopic) or method.force.startswith("shift"))
 
 
 def fallen(report: Array) -> dict[str, float]:

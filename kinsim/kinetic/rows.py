@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..compiled import Apart, kernel, perform, question, routine, short_question
+from ..compiled import Apart, greatest, kernel, perform, question, routine, short_question
 from ..schemes.bed import beta_of
 from ..schemes.questions import (
     acts_before,
@@ -183,6 +183,48 @@ def pushed(force: Any, flux: Any, bed: Any, wanted: Wanted, dt: float, place: Pl
     )
 
 
+class Watch(NamedTuple):
+    """Where the least entry of f of a step is found, chunk by chunk.
+
+    Attributes:
+        parts: The two parts that make f, as `Apart.row`; none where f is stored.
+        span: Where they work.
+        f: Room for a chunk, f itself where it is stored, or without rows if nobody asks.
+    """
+
+    parts: NDArray[np.int64]
+    span: Array
+    f: Array
+
+
+@routine()
+def least_entry(watch: Watch, dt: float, place: Place, room: Array) -> float:
+    """The least entry of f after the force in a tile, 0 if nobody asks."""
+    least, span, f = 0.0, watch.span, watch.f
+    if f.shape[0] == 0:
+        return least
+    if watch.parts.shape[0] == 0:
+        for k in range(place.n):
+            least = min(least, least_of_row(f, place.begin - 2 + k))
+        return least
+    for first in range(0, place.n, CHUNK):
+        span[0], span[1], span[2], span[3] = first, min(first + CHUNK, place.n), 0.0, 0.0
+        for part in range(2):
+            perform(watch.parts, part, dt, place.begin, place.n, place.first, place.last, room)
+        for k in range(int(span[1]) - first):
+            least = min(least, least_of_row(f, k))
+    return least
+
+
+@routine()
+def least_of_row(f: Array, i: int) -> float:
+    """The least entry of a row."""
+    most = -f[i, 0]
+    for j in range(f.shape[1]):
+        most = greatest(most, -f[i, j])
+    return -most
+
+
 @kernel
 def carry(
     parts: NDArray[np.int64], dt: float, rooms: Array, nx: int, span: Array, stored: bool, moves: bool, pushes: bool
@@ -227,6 +269,11 @@ class Carrier:
         wanted = wanted_of(self._nx, self._xi, *names)
         lost = carry(self._parts(wanted), dt, rooms, self._nx, wanted.span, "T" in names, True, "f" in names)
         return wanted, float(lost)
+
+    def watch(self) -> Watch:
+        """What finds the least entry of f of a step, in room for a chunk."""
+        self._watched = wanted_of(CHUNK, self._xi, "f")
+        return Watch(self._parts(self._watched), self._watched.span, self._watched.f)
 
     def push(self, rooms: Array, T: Array) -> Wanted:
         """f after the force, of what stands after transport, shape (nx, n)."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..arrays import Array
 from ..compiled import formula, greatest, kernel, perform, routine
 from ..kinetic.nodes import outermost
+from ..kinetic.rows import Watch, least_entry
 from ..schemes.bed import beta_of
 from ..schemes.formulas import updated
 from ..schemes.questions import extent, face_states, fluxes, is_sloped, judge, limits_outflow, settle, show
@@ -54,14 +55,14 @@ the edge of the window, so that somebody has to look at it."""
 
 (
     LEAST_H, MOST_H, MOST_Q, MOST_U, FASTEST, IN_LEFT, IN_RIGHT, BAD, MOVED_LEFT, MOVED_RIGHT, RESTS, FACES, MADE,
-    MENDED, CHANGE,
-) = range(15)  # fmt: skip
+    MENDED, CHANGE, LEAST_F,
+) = range(16)  # fmt: skip
 """What is kept of each tile."""
 
 (
     T, BEFORE, TICKS, LEFT_OVER, STILL, IN_LEFT_ALL, IN_RIGHT_ALL, MADE_ALL, LOST_ALL, MENDED_ALL, H_MIN, U_MAX,
-    WORST, REACH, BEYOND, SWEPT, LIFT_MOST, LIFT_EVER, LIFT_FROM, LIFT_TO, LIFT_SINCE, LIFT_LEAST,
-) = range(22)  # fmt: skip
+    WORST, REACH, BEYOND, SWEPT, LIFT_MOST, LIFT_EVER, LIFT_FROM, LIFT_TO, LIFT_SINCE, LIFT_LEAST, F_MIN,
+) = range(23)  # fmt: skip
 """What is seen of a run: see `solver.State`."""
 
 ROUNDING = 1e-12
@@ -136,7 +137,7 @@ JUDGE, SHOW, MEET, FLUXES, TRANSPORTED, SETTLE, FORCED, LOOK = range(8)
 @routine()
 def sweep(
     shape: Shape, parts: Parts, place: Place, h: Array, q: Array, dt: float, h1: Array, q1: Array, whole: bool,
-    room: Array, kept: Array,
+    room: Array, watch: Watch, kept: Array,
 ) -> None:  # fmt: skip
     """U^n -> U^{n+1} of a tile; the room then holds its stages. Unless all are asked for, rest costs its judgement."""
     n, lam, begin, first, last = place.n, dt / shape.dx, place.begin, place.first, place.last
@@ -148,7 +149,7 @@ def sweep(
     if rests and not whole and shape.summed == 0.0:
         for k in range(n):
             h1[begin + k], q1[begin + k] = room[H + k], room[Q + k]
-        for what in (IN_LEFT, IN_RIGHT, MOVED_LEFT, MOVED_RIGHT, FACES, MADE, MENDED, CHANGE):
+        for what in (IN_LEFT, IN_RIGHT, MOVED_LEFT, MOVED_RIGHT, FACES, MADE, MENDED, CHANGE, LEAST_F):
             kept[what] = 0.0
         return
     perform(parts, SHOW, dt, begin, n, first, last, room)  # slopes and half a step, or (19)
@@ -166,6 +167,7 @@ def sweep(
     kept[MENDED] = mended + (perform(parts, FORCED, dt, begin, n, first, last, room) if shape.summed > 0.0 else 0.0)
     for k in range(n):
         h1[begin + k], q1[begin + k] = room[H1 + k], room[Q1 + k]
+    kept[LEAST_F] = least_entry(watch, dt, place, room)
     kept[IN_LEFT], kept[IN_RIGHT], kept[MADE] = room[left1 - 1], -room[F1 + n - 1], 0.0
     if shape.two_fluxes > 0.0:  # where the two cells of a face take different fluxes, mass appears or vanishes
         for k in range(0 if first and shape.left.kind != RING else -1, n - 1):
@@ -322,7 +324,7 @@ def next_dt(asked: Asked, planned: Array, top: float, fast: float, dx: float, se
 @kernel
 def march(
     shape: Shape, parts: Parts, lifting: Array, asked: Asked, planned: Array, most: int, states: Any, rooms: Array,
-    kept: Array, dts: Array, seen: Array, fresh: bool, whole: bool,
+    watch: Watch, kept: Array, dts: Array, seen: Array, fresh: bool, whole: bool,
 ) -> tuple[int, int]:  # fmt: skip
     """At most `most` steps; returns how many were made, and why it ended.
 
@@ -360,7 +362,7 @@ def march(
             if whole or not asleep:
                 begin = 2 + tile * TILE
                 place = Place(begin, min(TILE, nx + 2 - begin), first, last)
-                sweep(shape, parts, place, h, q, dt, h1, q1, whole, rooms[tile if whole else 0], kept[tile])
+                sweep(shape, parts, place, h, q, dt, h1, q1, whole, rooms[tile if whole else 0], watch, kept[tile])
                 seen[SWEPT] += 0.0 if kept[tile, RESTS] > 0.0 else place.n
                 if may_leave and (kept[tile, RESTS] == 0.0 or shape.summed > 0.0):
                     leaves = leaves or leave_window(shape, place.n, rooms[0])
@@ -438,6 +440,8 @@ def note(ring: bool, kept: Array, dt: float, dx: float, courant: float, seen: Ar
     seen[MENDED_ALL] += dx * mended
     seen[H_MIN], seen[U_MAX] = min(seen[H_MIN], least(kept)), max(seen[U_MAX], largest(kept, MOST_U))
     seen[WORST] = max(seen[WORST], courant)
+    for tile in range(last + 1):
+        seen[F_MIN] = min(seen[F_MIN], kept[tile, LEAST_F])
 
 
 @routine()

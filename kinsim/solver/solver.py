@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..clock import AnyClock, Courant, Fixed, Replay
-from ..kinetic.rows import Carrier
+from ..kinetic.rows import CHUNK, Carrier, Watch, is_summed
 from ..kinetic.velocity import Fitted, Grid, Uniform, Window
 from ..memory import require
 from ..method import Kinetic, Macroscopic
@@ -23,6 +23,7 @@ from .march import (
     BEFORE,
     BEYOND,
     COUNTED,
+    F_MIN,
     FASTEST,
     H_MIN,
     LEFT_OVER,
@@ -44,8 +45,11 @@ from .march import (
 from .model import model_of, parts_of, shape_of
 from .stages import Stages
 
-KEPT, SEEN = 15, 22
+KEPT, SEEN = 16, 23
 """What `march` keeps of each tile, and sees of a run."""
+
+NOBODY = Watch(np.zeros((0, 3), dtype=np.int64), np.zeros(4), np.zeros((0, 1)))
+"""Does not look for the least entry of f."""
 
 
 @dataclass
@@ -98,16 +102,13 @@ class Solver:
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic, force: bool = False) -> None:
         self.scene, self.method, self.force = scene, method, force
         nx = scene.cells.count
-        self._nx, self.step = nx, 0
-        self._tiles = -(-nx // TILE)
+        self._nx, self._tiles, self.step = nx, -(-nx // TILE), 0
         self._states = [(np.zeros(nx + 4), np.zeros(nx + 4)) for _ in range(3)]
-        self._room = np.zeros((1, SIZE))
-        self._kept = np.zeros((self._tiles, KEPT))
+        self._room, self._kept = np.zeros((1, SIZE)), np.zeros((self._tiles, KEPT))
         self._fresh, self._dt = True, 0.0
         self._stages: Stages | None = None
-        self.attempted = 0.0
+        self.attempted, self.seen = 0.0, fresh_seen()
         self.first_mass = float(np.sum(scene.initial()[0])) * scene.cells.dx
-        self.seen = fresh_seen()
         self._make(scene.fastest)
         self.put(*scene.initial())
 
@@ -126,6 +127,7 @@ class Solver:
         self._rows = np.array([part.row for part in self._parts], dtype=np.int64)
         if self.grid is not None:
             self.carrier = Carrier(model, self._nx, self.grid.side)
+        self._watching, self._watch = watch_of(model, self.method, self.grid, self.force)
         bed = model.ground.bed
         self._lifting = np.array([bed.n, bed.bend]) if isinstance(bed, Curve) else np.zeros((2, 1))
 
@@ -190,8 +192,8 @@ class Solver:
         self, asked: Asked, planned: Array, most: int, rooms: Array, dts: Array, whole: bool = False
     ) -> tuple[int, int]:
         steps, reason = march(
-            self._shape, self._rows, self._lifting, asked, planned, most, tuple(self._states), rooms, self._kept, dts,
-            self.seen, self._fresh, whole,
+            self._shape, self._rows, self._lifting, asked, planned, most, tuple(self._states), rooms, self._watch,
+            self._kept, dts, self.seen, self._fresh, whole,
         )  # fmt: skip
         if steps < most:
             self.attempted = float(dts[steps])
@@ -249,6 +251,7 @@ class Solver:
         other._kept, other.seen, other.force = np.zeros((self._tiles, KEPT)), fresh_seen(), force
         if is_stored(self.method):
             other._take(model_of(self.scene, self.method, self.grid))
+        other._watch = NOBODY
         return other
 
     @property
@@ -289,6 +292,23 @@ def ended(clock: AnyClock, solver: Solver) -> bool:
     return bool(solver.seen[TICKS] >= clock.ticks and solver.seen[LEFT_OVER] == 0.0)
 
 
+def watch_of(
+    model: Model, method: Kinetic | Macroscopic, grid: Grid | None, force: bool
+) -> tuple[Carrier | None, Watch]:  # fmt: skip
+    """What finds the least entry of f where it may be negative, and the carrier whose tables that reads."""
+    if grid is None or (keeps_positive(method) and not force):
+        return None, NOBODY
+    if is_summed(model.projection):
+        return None, NOBODY._replace(f=model.projection.f)
+    carrier = Carrier(model, CHUNK, grid.side)
+    return carrier, carrier.watch()
+
+
+def keeps_positive(method: Kinetic | Macroscopic) -> bool:
+    """Whether f >= 0 is proved under (28): one flux at a face of what stands there, and a force that moves f."""
+    return method.scheme in (1, 4) and (isinstance(method, Macroscopic) or method.force.startswith("shift"))
+
+
 def is_stored(method: Kinetic | Macroscopic) -> bool:
     """Whether the next state comes out of f, so that f is stored."""
     return isinstance(method, Kinetic) and method.projection == "re-summed" and not isinstance(method.velocity, Fitted)
@@ -297,6 +317,6 @@ def is_stored(method: Kinetic | Macroscopic) -> bool:
 def fresh_seen() -> Array:
     """Nothing seen yet."""
     seen = np.zeros(SEEN)
-    seen[[H_MIN, LIFT_FROM, LIFT_SINCE, LIFT_LEAST]] = math.inf
+    seen[[H_MIN, F_MIN, LIFT_FROM, LIFT_SINCE, LIFT_LEAST]] = math.inf
     seen[LIFT_TO] = -math.inf
     return seen
