@@ -71,10 +71,19 @@ def evaluate(formula: str, x: ArrayLike | None = None) -> Any:
     if len(formula) > LONGEST:
         raise InputError(f"formula of {len(formula)} characters; at most {LONGEST} are read")
     if x is None:
-        return _at(formula, dict(CONSTANTS))
-    places: NDArray[np.float64] = np.asarray(x, dtype=float)
-    values = [_at(formula, {**CONSTANTS, "x": float(place)}) for place in places.ravel()]
-    return np.array(values).reshape(places.shape)
+        return _at(formula, _Arithmetic(dict(CONSTANTS)))
+    places: NDArray[np.float64] = np.ascontiguousarray(x, dtype=float)
+    return np.frombuffer(_values(formula, places.tobytes())).reshape(places.shape).copy()
+
+
+@lru_cache(maxsize=32)  # a scene asks for the same values many times, and each takes microseconds
+def _values(formula: str, places: bytes) -> bytes:
+    arithmetic = _Arithmetic({**CONSTANTS})
+    values = []
+    for place in np.frombuffer(places).tolist():
+        arithmetic.names["x"] = place
+        values.append(_at(formula, arithmetic))
+    return np.array(values).tobytes()
 
 
 def check_names(formula: str) -> None:
@@ -101,11 +110,12 @@ def _parsed(formula: str) -> ast.AST:
         raise InputError(f"cannot read the formula {_short(formula)}") from None
 
 
-def _at(formula: str, names: dict[str, float]) -> float:
+def _at(formula: str, arithmetic: _Arithmetic) -> float:
+    names = arithmetic.names
     where = f" at x = {names['x']:g}" if "x" in names else ""
     tree = _parsed(formula)
     try:
-        result = _Arithmetic(names).eval(formula, previously_parsed=tree)
+        result = arithmetic.eval(formula, previously_parsed=tree)
         number = float(result)
     except KeyError as error:  # a comparison that is not arithmetic
         raise InputError(f"{_short(formula)}: operator {getattr(error.args[0], '__name__', '')} is not known") from None

@@ -25,7 +25,7 @@ from kinsim import Blocks, Cells, ConstantSlope, Coulomb, Fixed, Macroscopic, Sc
 from kinsim.progress import Watched
 scene = Scene(Cells(0, 1, 20), Blocks((0.5,), (1, 0.5)), ConstantSlope(0.4), Coulomb(0.2), epsilon=0.4)
 with Watched({quiet}):
-    print(simulate(scene, Macroscopic(4), Fixed(1e-3, 20)).h[-1].tobytes().hex())
+    print(simulate(scene, Macroscopic(1), Fixed(1e-3, 20)).h[-1].tobytes().hex())
 """
 """A run that tells when it compiles, and prints its last heights."""
 
@@ -68,7 +68,7 @@ def heights(printed: str) -> np.ndarray:
 @pytest.fixture(scope="module")
 def expected() -> np.ndarray:
     """Heights of the small run in this process."""
-    return simulate(SCENE, Macroscopic(4), Fixed(1e-3, 20)).h[-1]
+    return simulate(SCENE, Macroscopic(1), Fixed(1e-3, 20)).h[-1]
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +104,7 @@ def copied(where: Path) -> Path:
 def test_a_second_process_compiles_nothing(cache: Path, expected: np.ndarray) -> None:
     """Nor does it write anything."""
     files = code_in(cache)
-    assert len(files) > 5
+    assert len(files) >= 5  # the loop, and the parts that scheme 1 has
     out, err = ended(started(SMALL.format(quiet=False), cache))
     np.testing.assert_array_equal(heights(out), expected)
     assert err == []
@@ -189,13 +189,11 @@ def test_a_damaged_file_costs_a_compilation(cache: Path, expected: np.ndarray, d
         assert err == said
 
 
-def test_a_cache_folder_that_cannot_be_made_is_no_obstacle(tmp_path: Path, expected: np.ndarray) -> None:
-    """A file stands in its place: code is kept in memory."""
+def test_a_cache_folder_that_cannot_be_made_is_no_obstacle(tmp_path: Path) -> None:
+    """A file stands in its place: code is then kept in memory, as in the next test."""
     blocked = tmp_path / "blocked"
     blocked.write_text("")
-    out, err = ended(started(SMALL.format(quiet=True), blocked))
-    np.testing.assert_array_equal(heights(out), expected)
-    assert err == []
+    assert python("from kinsim.compiled import cache_folder\nprint(cache_folder())", blocked).strip() == "None"
     assert blocked.read_text() == ""
 
 
@@ -238,7 +236,7 @@ OWN = SMALL.replace("scene = ", "{law}\nscene = ").replace("Coulomb(0.2)", "Mine
 
 def with_friction(friction: object) -> np.ndarray:
     """Heights of the small run with another law."""
-    return simulate(replace(SCENE, friction=friction), Macroscopic(4), Fixed(1e-3, 20)).h[-1]
+    return simulate(replace(SCENE, friction=friction), Macroscopic(1), Fixed(1e-3, 20)).h[-1]
 
 
 def test_an_edited_law_of_ones_own_gives_the_new_numbers(cache: Path, tmp_path: Path) -> None:
