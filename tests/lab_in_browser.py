@@ -161,9 +161,9 @@ def test_stages_are_those_of_a_step(page):
     play = Play(file)
     play.advance()
     h, q = file.scene.initial()
-    stages = step(file.scene, play.method, h, q, play.loop.dts[0])
+    stages = step(file.scene, play.method, h, q, float(play.simulation.dts[0][0]))
     np.testing.assert_array_equal(picture(page), stages.M.T.astype(np.float32))
-    after = step(file.scene, play.method, stages.h1, stages.q1, play.loop.dts[0])
+    after = step(file.scene, play.method, stages.h1, stages.q1, float(play.simulation.dts[0][0]))
     for words, f in (("Transport", stages.f_transport), ("Force", stages.f_force), ("Projection", after.M)):
         press(page, "next")
         expect(page.locator(".stage-told")).to_contain_text(words)

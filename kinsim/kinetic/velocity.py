@@ -54,10 +54,6 @@ class Uniform:
             raise ValueError("a velocity grid needs its bound; simulate finds one, or give it")
         return _within_numbers(Grid(self.count, 2.0 * self.bound / self.count))
 
-    def fits(self, grid: Grid, reach: float) -> bool:
-        """The grid stays."""
-        return True
-
 
 @value
 class Window:
@@ -65,8 +61,7 @@ class Window:
 
     Attributes:
         dxi: Width of a velocity cell.
-        margin: The window reaches to `margin` times the occupied velocities when it is made. It is made anew when they
-            leave it, or when they need less than half of it.
+        margin: The window reaches to `margin` times the occupied velocities when it is made anew, as they leave it.
     """
 
     dxi: Annotated[Number, Field(gt=0)]
@@ -87,14 +82,10 @@ class Window:
             )
         return _within_numbers(Grid(2 * math.ceil(half), self.dxi))
 
-    def fits(self, grid: Grid, reach: float) -> bool:
-        """Whether `grid` still serves."""
-        return reach <= grid.bound and (grid.half <= 4 or grid.bound <= 2.0 * self.margin * reach)
-
 
 @value
 class Fitted:
-    """`count` Gauss-Jacobi nodes per cell on the side of xi = 0 that holds less of M; see `kinsim.kinetic.fitted`."""
+    """`count` Gauss-Jacobi nodes per cell on the side of xi = 0 that holds less of M; see `kinsim.kinetic.gauss_jacobi`."""
 
     count: Annotated[Whole, Field(ge=1, le=64)] = 6
     kind: Literal["fitted"] = kind("fitted")
