@@ -85,7 +85,7 @@ class Window:
 
 @value
 class Fitted:
-    """`count` Gauss-Jacobi nodes per cell on the side of xi = 0 that holds less of M; see `kinsim.kinetic.gauss_jacobi`."""
+    """`count` Gauss-Jacobi nodes per cell on the side of xi = 0 that holds less of M: `kinsim.kinetic.gauss_jacobi`."""
 
     count: Annotated[Whole, Field(ge=1, le=64)] = 6
     kind: Literal["fitted"] = kind("fitted")
