@@ -1,10 +1,17 @@
-"""The clock: when the states are."""
+"""The clock: when the states are.
+
+The march asks every clock for `dt`, the length of all steps, or NaN; `number`, the Courant number of all steps, or 0;
+`planned`, the lengths of the steps, or nothing; `ticks`, how many are planned, `until`, the time that steps are
+shortened to meet, and `most`, after how many steps the run is stopped, or infinity.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
+import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from .value import Number, Whole, kind, value
@@ -15,21 +22,6 @@ if TYPE_CHECKING:
 Positive = Annotated[Number, Field(gt=0)]
 
 
-class Clock(Protocol):
-    """Says when the states are; the march takes the steps."""
-
-    @property
-    def end(self) -> float:
-        """The time after the last step."""
-
-    @property
-    def stop_at_rest(self) -> bool:
-        """Whether a mass that came to rest ends the run."""
-
-    def steps_at(self, speed: float, dx: float) -> int:
-        """How many steps are foreseen if the fastest particle stays as fast as `speed`."""
-
-
 @value
 class Fixed:
     """`steps` steps of length `dt` (dimensionless time); fewer with `stop_at_rest`, if the mass came to rest before."""
@@ -38,6 +30,10 @@ class Fixed:
     steps: Annotated[Whole, Field(ge=1)]
     stop_at_rest: bool = False
     kind: Literal["fixed"] = kind("fixed")
+    number: ClassVar[float] = 0.0
+    until: ClassVar[float] = math.inf
+    most: ClassVar[float] = math.inf
+    planned: ClassVar[NDArray[np.float64]] = np.empty(0)
 
     def __post_init__(self) -> None:
         if not self.end < math.inf:
@@ -73,6 +69,14 @@ class Courant:
     stop_at_rest: bool = False
     most: Annotated[Whole, Field(ge=1)] = 10_000_000
     kind: Literal["courant"] = kind("courant")
+    dt: ClassVar[float] = math.nan
+    ticks: ClassVar[float] = math.inf
+    planned: ClassVar[NDArray[np.float64]] = np.empty(0)
+
+    @property
+    def until(self) -> float:
+        """The time after the last step."""
+        return self.end
 
     def steps_at(self, speed: float, dx: float) -> int:
         """The time over the length of a step, at most `most`."""
@@ -88,6 +92,15 @@ class Replay:
     end: Annotated[Number, Field(ge=0)]
     kind: Literal["replay"] = kind("replay")
     stop_at_rest: ClassVar[bool] = False
+    dt: ClassVar[float] = math.nan
+    number: ClassVar[float] = 0.0
+    until: ClassVar[float] = math.inf
+    most: ClassVar[float] = math.inf
+
+    @property
+    def planned(self) -> NDArray[np.float64]:
+        """Lengths of the steps."""
+        return np.array(self.dts)
 
     @property
     def ticks(self) -> int:
@@ -104,4 +117,4 @@ AnyClock = Fixed | Courant | Replay
 
 def first_courant(scene: Scene, clock: Fixed | Courant) -> float:
     """The Courant number of the first step, in closed form."""
-    return scene.fastest * clock.dt / scene.cells.dx if isinstance(clock, Fixed) else clock.number
+    return clock.number or scene.fastest * clock.dt / scene.cells.dx

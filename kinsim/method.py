@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, WrapSerializer
 from pydantic.json_schema import SkipJsonSchema
 
-from .kinetic.velocity import Fitted, Uniform, Velocity
+from .kinetic.velocity import Fitted, Uniform, Velocity, Window
 from .value import described_outside, kind, value
 
 NoFlag = BeforeValidator(lambda given: str(given) if isinstance(given, bool) else given)
@@ -65,6 +65,9 @@ class Macroscopic:
     statics: Statics = "hold"
     flux: SkipJsonSchema[Annotated[Any, BeforeValidator(_flux), WrapSerializer(described_outside)]] = None
     kind: Literal["macroscopic"] = kind("macroscopic")
+    velocity_cells: ClassVar[None] = None
+    stores_density: ClassVar[bool] = False
+    keeps_positive: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         _check_scheme(self)
@@ -120,6 +123,21 @@ class Kinetic:
                     f"equilibrium {self.equilibrium!r} puts all of M into the window, so that nothing beyond it can be "
                     "left out; take beyond='stop', or cell averages"
                 )
+
+    @property
+    def velocity_cells(self) -> Uniform | Window | None:
+        """The velocity cells that are summed over; None with fitted nodes."""
+        return None if isinstance(self.velocity, Fitted) else self.velocity
+
+    @property
+    def stores_density(self) -> bool:
+        """Whether the next state comes out of f."""
+        return self.projection == "re-summed" and self.velocity_cells is not None
+
+    @property
+    def keeps_positive(self) -> bool:
+        """Whether f >= 0 is proved under (28): one flux at a face of what stands there, and a force that moves f."""
+        return self.scheme in (1, 4) and self.force.startswith("shift")
 
     @property
     def twin(self) -> Macroscopic:

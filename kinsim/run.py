@@ -16,7 +16,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from .arrays import Array
-from .clock import Clock, Replay
+from .clock import AnyClock, Replay
 from .diagnostics.endings import ENDED, Verdict, VerdictKind
 from .diagnostics.ledger import EVERY_COLUMN
 from .mean import mean_velocity
@@ -50,7 +50,7 @@ class Run:
 
     scene: Scene
     method: Kinetic | Macroscopic
-    clock: Clock
+    clock: AnyClock
     t: Array
     h: Array
     q: Array
@@ -162,7 +162,7 @@ class Run:
         }
 
 
-def description(scene: Scene, method: Kinetic | Macroscopic, clock: Clock) -> dict[str, Any]:
+def description(scene: Scene, method: Kinetic | Macroscopic, clock: AnyClock) -> dict[str, Any]:
     """The three as plain keys and values."""
     parts = {"scene": scene, "method": method, "clock": clock}
     return {name: TypeAdapter(type(thing)).dump_python(thing, mode="json") for name, thing in parts.items()}

@@ -13,7 +13,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from .checkpoint import Keeper, Kept, part, under
-from .clock import AnyClock, Courant
+from .clock import AnyClock
 from .diagnostics.causes import Causes
 from .diagnostics.dump import Dump, recorders, require_density
 from .diagnostics.endings import LIFTED_WORDS, Verdict, ending, verdict
@@ -62,8 +62,7 @@ class Simulation:
     def start(self) -> None:
         """Show the initial state to all observers; from now on time counts."""
         solver, clock = self.solver, self.clock
-        number = clock.number if isinstance(clock, Courant) else 0.0
-        steps = clock.steps_at(max(self.scene.fastest, falling(self.scene, number)), self.scene.cells.dx)
+        steps = clock.steps_at(max(self.scene.fastest, falling(self.scene, clock.number)), self.scene.cells.dx)
         self.history.foresee(steps, self.scene.cells.count)
         lifted = note_lift(self.scene, solver.h, solver.q, solver.seen)
         solver.warm_up()
@@ -130,11 +129,10 @@ class Simulation:
         solver, clock, step, t = self.solver, self.clock, self.solver.step, self.solver.t
         look = min(observer.next_step(step) for observer in self.observers) - step
         paced = max(int(LOOK / self._pace), 1) if self._pace else 16
-        limit = clock.most - step if isinstance(clock, Courant) else math.inf
         until = min(observer.next_time(t) for observer in self.observers)
         past = min(observer.next_past(t) for observer in self.observers)
         began = time.perf_counter()
-        block = solver.march(clock, int(max(min(most, look, paced, limit), 1)), until, past)
+        block = solver.march(clock, int(max(min(most, look, paced, clock.most - step), 1)), until, past)
         if block.dts.size:
             self._pace = (time.perf_counter() - began) / block.dts.size
         return block

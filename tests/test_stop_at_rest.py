@@ -10,7 +10,7 @@ import pytest
 from states import scene_with
 
 from kinsim import Courant, Fixed, Macroscopic, load_scene, simulate
-from kinsim.clock import Clock
+from kinsim.clock import AnyClock
 
 
 def collapse(film: float):
@@ -27,7 +27,7 @@ def collapse(film: float):
         (3, 0.2, Fixed(0.005, 6000, stop_at_rest=True)),
     ],
 )
-def test_a_mass_that_came_to_rest_ends_the_run(scheme: int, film: float, clock: Clock) -> None:
+def test_a_mass_that_came_to_rest_ends_the_run(scheme: int, film: float, clock: AnyClock) -> None:
     """Earlier than without, and in the state in which it then stays: bit for bit, or to rounding under scheme 3."""
     run = simulate(collapse(film), Macroscopic(scheme), clock)
     whole = simulate(collapse(film), Macroscopic(scheme), replace(clock, stop_at_rest=False))

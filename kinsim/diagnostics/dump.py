@@ -12,7 +12,7 @@ from ..arrays import Array
 from ..checkpoint import Kept
 from ..clock import AnyClock, Fixed
 from ..errors import InputError
-from ..kinetic.velocity import Fitted, Grid
+from ..kinetic.velocity import Grid
 from ..memory import require
 from ..method import Kinetic, Macroscopic
 from ..value import Number, Whole, value
@@ -165,7 +165,7 @@ def require_density(method: Kinetic | Macroscopic) -> Kinetic:
     Raises:
         InputError: It does not.
     """
-    if not isinstance(method, Kinetic) or isinstance(method.velocity, Fitted):
+    if not isinstance(method, Kinetic) or method.velocity_cells is None:
         raise InputError("dumps and causes need a density on a velocity grid: take Kinetic with Uniform or Window")
     return method
 

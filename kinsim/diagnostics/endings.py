@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..clock import AnyClock, Courant, Fixed
+from ..clock import AnyClock, Fixed
 from ..solver.asked import largest_sum
 from ..solver.march import AT_REST as RESTS
 from ..solver.march import (
@@ -80,7 +80,7 @@ def ending(block: Block, clock: AnyClock) -> tuple[VerdictKind, str, int | None]
             f"velocities up to {max(solver.counted, solver.fastest):.3g} ask for steps of dt = {solver.attempted:.3g}"
         )
         return "too-many-steps", f"{asked}, too short to come to t = {end:g}; stopped", None
-    if isinstance(clock, Courant) and block.step >= clock.most:
+    if block.step >= clock.most:
         return (
             "too-many-steps",
             f"velocities up to {max(solver.counted, solver.fastest):.3g} ask for more than {clock.most} steps; stopped",

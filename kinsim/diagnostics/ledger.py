@@ -11,7 +11,6 @@ from ..arrays import Array
 from ..checkpoint import Kept
 from ..kinetic.equilibrium.status import MASS_ONLY, TWO_MOMENTS
 from ..kinetic.force import moved
-from ..kinetic.velocity import Fitted
 from ..mean import mean_velocity
 from ..method import Kinetic, Macroscopic
 from ..scene import Scene
@@ -75,8 +74,7 @@ class Ledger:
 
     def __init__(self, scene: Scene, method: Kinetic | Macroscopic) -> None:
         self._scene = scene
-        on_grid = isinstance(method, Kinetic) and not isinstance(method.velocity, Fitted)
-        self._density = on_grid
+        self._density = method.velocity_cells is not None
         self._lifts = lifts(scene)
         self._rows: list[dict[str, float]] = []
         self.least_height, self.least_density, self.worst_courant = math.inf, 0.0, 0.0

@@ -24,7 +24,7 @@ LIFT_COLUMNS = {
 
 def lifts(scene: Scene) -> bool:
     """Whether the mass could leave the ground of a scene."""
-    return isinstance(scene.ground, Smooth) and scene.ground.bends
+    return scene.ground.bends
 
 
 def lift_row(scene: Scene, seen: Array) -> dict[str, float]:
@@ -52,8 +52,9 @@ def lift_words(scene: Scene, seen: Array) -> str:
 
 def note_lift(scene: Scene, h: Array, q: Array, seen: Array) -> bool:
     """Count the cells of the initial state that leave the ground; whether any does."""
-    if not (isinstance(scene.ground, Smooth) and scene.ground.bends):
+    if not scene.ground.bends:
         return False
+    assert isinstance(scene.ground, Smooth)
     thick, normal = normal_force(scene.ground, h, q)
     seen[LIFT_LEAST] = min(seen[LIFT_LEAST], float(normal[thick].min(initial=math.inf)))
     up = np.flatnonzero(thick & (normal < 0.0))

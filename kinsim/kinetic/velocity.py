@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,7 +48,9 @@ class Uniform:
         """In a few words."""
         return f"{self.count} nodes"
 
-    def grid(self, reach: float) -> Grid:
+    follows: ClassVar[bool] = False
+
+    def grid(self, reach: float, spare: int = 0) -> Grid:
         """The same grid for every reach."""
         if self.bound is None:
             raise ValueError("a velocity grid needs its bound; simulate finds one, or give it")
@@ -73,9 +75,12 @@ class Window:
         """In a few words."""
         return f"window of cells {self.dxi:g}"
 
-    def grid(self, reach: float) -> Grid:
-        """A window around velocities up to `reach`."""
-        half = max(self.margin * reach / self.dxi, 2.0)
+    follows: ClassVar[bool] = True
+    beyond: ClassVar[Beyond] = "stop"
+
+    def grid(self, reach: float, spare: int = 0) -> Grid:
+        """A window around velocities up to `reach`, and so many cells beyond."""
+        half = max(self.margin * (reach / self.dxi + spare), 2.0)
         if not half <= WIDEST:
             raise InputError(
                 f"velocity: a window of {2 * half:.3g} cells is asked for; take dxi well above {self.dxi:g}"

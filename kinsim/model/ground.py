@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -36,6 +37,7 @@ class Flat:
     hold: float
     beta: float
     dx: float
+    bends: ClassVar[bool] = False
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..clock import AnyClock, Courant, Fixed
-from ..kinetic.velocity import Uniform
-from ..model.ground import Smooth
+from ..clock import AnyClock
 from ..scene import Scene
 from .march import ROUNDING, Asked
 
@@ -25,17 +23,17 @@ LARGEST = float(np.finfo(float).max)
 def asked_of(solver: Solver, clock: AnyClock, until: float = math.inf, past: float = math.inf) -> Asked:
     """Steps as the clock wants them, to land on the time `until`, and no further than the first one at `past`."""
     scene, grid = solver.scene, solver.grid
-    number = clock.number if isinstance(clock, Courant) else 0.0
+    number, velocity = clock.number, solver.method.velocity_cells
     bound, tight, stops, slow = math.inf, math.inf, 1.0, 0.0
-    if grid is not None:
+    if grid is not None and velocity is not None:
         bound, slow = grid.bound, 1e-3 * grid.dxi
-    if grid is not None and isinstance(solver.velocity, Uniform):
-        stops, tight = float(solver.velocity.beyond == "stop"), bound - 2.0 * grid.dxi
+        if not velocity.follows:
+            stops, tight = float(velocity.beyond == "stop"), bound - 2.0 * grid.dxi
     lifts = 0.0
-    if isinstance(scene.ground, Smooth) and scene.ground.bends:
+    if scene.ground.bends:
         lifts = 2.0 if scene.chute.lifting == "stop" else 1.0  # type: ignore[union-attr]
     return Asked(
-        dt=clock.dt if isinstance(clock, Fixed) else math.nan, number=number,
+        dt=clock.dt, number=number,
         falling=falling(scene, number) if number else 0.0, shortest=SHORTEST * clock.end if number else 0.0,
         limit=math.inf if solver.force else solver.limit * (1.0 + ROUNDING), room=largest_sum(solver), bound=bound,
         stops=stops, pull=strongest(scene), tight=tight, still=0.0 if grid is not None else 1e-12, still_per_h=slow,

@@ -14,7 +14,7 @@ from ..kinetic.equilibrium.averages import mass_outside
 from ..kinetic.equilibrium.questions import reports
 from ..kinetic.force import moves_nodes
 from ..kinetic.rows import Carrier, cell_rows, face_rows, is_summed
-from ..kinetic.velocity import Grid, Uniform, Window
+from ..kinetic.velocity import Grid
 from ..method import Kinetic
 from ..schemes.questions import comes_back, has_own_density
 from ..schemes.tile import TILE, Place
@@ -38,9 +38,9 @@ class Density:
         self._stages = stages
         solver, method = stages.solver, stages.solver.method
         assert isinstance(method, Kinetic)
-        assert isinstance(method.velocity, Uniform | Window)
+        assert method.velocity_cells is not None
         self._scene, self._method, self._model = solver.scene, method, solver.model
-        self._velocity = method.velocity
+        self._velocity = method.velocity_cells
         self.grid = grid or self._own_grid()
         if self.grid != solver.grid:
             self._model = model_of(solver.scene, method, self.grid)
@@ -50,11 +50,8 @@ class Density:
         self.xi = self.grid.xi
 
     def _own_grid(self) -> Grid:
-        velocity = self._velocity
-        if isinstance(velocity, Uniform):
-            return velocity.grid(0.0)
-        room = self._stages.dt * strongest(self._scene) + velocity.dxi
-        return velocity.grid(self.reach + room)
+        pushed = self._stages.dt * strongest(self._scene)
+        return self._velocity.grid(self.reach + pushed, spare=1)
 
     @property
     def reach(self) -> float:
@@ -113,7 +110,7 @@ class Density:
     @cached_property
     def lost(self) -> float:
         """Mass that the force pushed out of the window, per dx."""
-        if isinstance(self._velocity, Window):
+        if self._velocity.follows:
             return 0.0
         return float(self._forced["lost"])
 

@@ -56,13 +56,13 @@ the edge of the window, so that somebody has to look at it."""
 (
     LEAST_H, MOST_H, MOST_Q, MOST_U, FASTEST, IN_LEFT, IN_RIGHT, BAD, MOVED_LEFT, MOVED_RIGHT, RESTS, FACES, MADE,
     MENDED, CHANGE, LEAST_F,
-) = range(16)  # fmt: skip
+) = range(KEPT := 16)  # fmt: skip
 """What is kept of each tile."""
 
 (
     T, BEFORE, TICKS, LEFT_OVER, STILL, IN_LEFT_ALL, IN_RIGHT_ALL, MADE_ALL, LOST_ALL, MENDED_ALL, H_MIN, U_MAX,
     WORST, REACH, BEYOND, SWEPT, LIFT_MOST, LIFT_EVER, LIFT_FROM, LIFT_TO, LIFT_SINCE, LIFT_LEAST, F_MIN,
-) = range(23)  # fmt: skip
+) = range(SEEN := 23)  # fmt: skip
 """What is seen of a run: see `solver.State`."""
 
 ROUNDING = 1e-12

@@ -10,14 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arrays import Array
-from ..clock import AnyClock, Courant, Fixed, Replay
-from ..kinetic.rows import CHUNK, Carrier, Watch, is_summed
-from ..kinetic.velocity import Fitted, Grid, Uniform, Window
+from ..clock import AnyClock, Fixed
+from ..kinetic.rows import Carrier
+from ..kinetic.velocity import Grid
 from ..memory import require
 from ..method import Kinetic, Macroscopic
 from ..scene import Scene
-from ..schemes.bed import Curve
+from ..schemes.bed import Curve, Plane
 from ..schemes.tile import SIZE, TILE, Model
+from . import ahead
 from .asked import asked_of
 from .march import (
     BEFORE,
@@ -26,6 +27,7 @@ from .march import (
     F_MIN,
     FASTEST,
     H_MIN,
+    KEPT,
     LEFT_OVER,
     LIFT_FROM,
     LIFT_LEAST,
@@ -34,6 +36,7 @@ from .march import (
     LOST_ALL,
     NOT_FINITE,
     OUTSIDE,
+    SEEN,
     TICKS,
     TIGHT,
     Asked,
@@ -44,12 +47,7 @@ from .march import (
 )  # fmt: skip
 from .model import model_of, parts_of, shape_of
 from .stages import Stages
-
-KEPT, SEEN = 16, 23
-"""What `march` keeps of each tile, and sees of a run."""
-
-NOBODY = Watch(np.zeros((0, 3), dtype=np.int64), np.zeros(4), np.zeros((0, 1)))
-"""Does not look for the least entry of f."""
+from .watch import NOBODY, watch_of
 
 
 @dataclass
@@ -109,16 +107,16 @@ class Solver:
         self._stages: Stages | None = None
         self.attempted, self.seen = 0.0, fresh_seen()
         self.first_mass = float(np.sum(scene.initial()[0])) * scene.cells.dx
+        ahead.begin()
         self._make(scene.fastest)
         self.put(*scene.initial())
 
     def _make(self, reach: float) -> None:
         """The model, with velocity cells for velocities up to `reach`."""
-        velocity = self.method.velocity if isinstance(self.method, Kinetic) else None
-        self.velocity = velocity if isinstance(velocity, Uniform | Window) else None
-        self.grid = self.velocity.grid(2.0 * reach) if self.velocity else None
+        velocity = self.method.velocity_cells
+        self.grid = velocity.grid(2.0 * reach) if velocity else None
         if self.grid is not None:
-            entries, densities = f"{self._nx} x {self.grid.count} entries", 3 if is_stored(self.method) else 1
+            entries, densities = f"{self._nx} x {self.grid.count} entries", 3 if self.method.stores_density else 1
             require(8.0 * densities * self._nx * self.grid.count, f"{densities} densities of {entries}")
         self._take(model_of(self.scene, self.method, self.grid))
 
@@ -128,8 +126,7 @@ class Solver:
         if self.grid is not None:
             self.carrier = Carrier(model, self._nx, self.grid.side)
         self._watching, self._watch = watch_of(model, self.method, self.grid, self.force)
-        bed = model.ground.bed
-        self._lifting = np.array([bed.n, bed.bend]) if isinstance(bed, Curve) else np.zeros((2, 1))
+        self._lifting = lifting_of(model.ground.bed)
 
     def put(self, h: Array, q: Array) -> None:
         """Stand at the state (h, q), each of shape (nx,)."""
@@ -172,10 +169,8 @@ class Solver:
 
     def march(self, clock: AnyClock, most: int, until: float = math.inf, past: float = math.inf) -> Block:
         """At most `most` steps, to land on the time `until`, and no further than the first one at or after `past`."""
-        planned = np.array(clock.dts) if isinstance(clock, Replay) else np.empty(0)
-        if not isinstance(clock, Courant):
-            most = min(most, int(clock.ticks - self.seen[TICKS]) + int(self.seen[LEFT_OVER] > 0.0))
-        until = min(until, clock.end) if isinstance(clock, Courant) else until  # the others end after so many steps
+        planned, until = clock.planned, min(until, clock.until)
+        most = int(min(most, clock.ticks - self.seen[TICKS] + float(self.seen[LEFT_OVER] > 0.0)))
         asked = asked_of(self, clock, until, past)
         dts, done, reason = np.empty(most), 0, COUNTED
         while done < most and reason == COUNTED:
@@ -191,6 +186,7 @@ class Solver:
     def _go(
         self, asked: Asked, planned: Array, most: int, rooms: Array, dts: Array, whole: bool = False
     ) -> tuple[int, int]:
+        ahead.wait()
         steps, reason = march(
             self._shape, self._rows, self._lifting, asked, planned, most, tuple(self._states), rooms, self._watch,
             self._kept, dts, self.seen, self._fresh, whole,
@@ -216,7 +212,7 @@ class Solver:
 
     def _follow(self, reach: float) -> bool:
         """Make a window that follows for velocities up to `reach`; False if the velocity cells are fixed."""
-        if not isinstance(self.velocity, Window):
+        if not (self.method.velocity_cells and self.method.velocity_cells.follows):
             return False
         self.seen[BEYOND] = 0.0
         report = self.model.flux.report
@@ -249,7 +245,7 @@ class Solver:
         other.__dict__ |= self.__dict__
         other._states = [(np.zeros(self._nx + 4), np.zeros(self._nx + 4)) for _ in range(3)]
         other._kept, other.seen, other.force = np.zeros((self._tiles, KEPT)), fresh_seen(), force
-        if is_stored(self.method):
+        if self.method.stores_density:
             other._take(model_of(self.scene, self.method, self.grid))
         other._watch = NOBODY
         return other
@@ -265,9 +261,8 @@ class Solver:
         """All that the next step depends on."""
         state, before = np.array([self.h, self.q]), np.array(self.before)
         kept = {"step": np.array([self.step, self._dt]), "seen": self.seen.copy(), "state": state, "before": before}
-        if self.grid is None:
-            return kept
-        return kept | {"report": self.model.flux.report.copy(), "cells": np.array(self.grid.count)}
+        of_grid = {"report": self.model.flux.report.copy(), "cells": np.array(self.grid.count)} if self.grid else {}
+        return kept | of_grid
 
     def restore(self, kept: dict[str, NDArray[Any]]) -> None:
         """Stand where `kept` was told."""
@@ -278,7 +273,7 @@ class Solver:
         for (h, q), values in zip(self._states, (kept["state"], kept["before"]), strict=False):
             h[2:-2], q[2:-2] = values
         if self.grid is not None:
-            if isinstance(self.velocity, Window):
+            if self.grid.count != int(kept["cells"]):
                 self.grid = Grid(int(kept["cells"]), self.grid.dxi)
                 self._take(model_of(self.scene, self.method, self.grid))
             self.model.flux.report[:] = kept["report"]
@@ -287,31 +282,13 @@ class Solver:
 
 def ended(clock: AnyClock, solver: Solver) -> bool:
     """Whether the clock has no step left."""
-    if isinstance(clock, Courant):
-        return solver.t >= clock.end
-    return bool(solver.seen[TICKS] >= clock.ticks and solver.seen[LEFT_OVER] == 0.0)
+    whole = solver.seen[TICKS] >= clock.ticks and solver.seen[LEFT_OVER] == 0.0
+    return bool(whole or solver.t >= clock.until)
 
 
-def watch_of(
-    model: Model, method: Kinetic | Macroscopic, grid: Grid | None, force: bool
-) -> tuple[Carrier | None, Watch]:  # fmt: skip
-    """What finds the least entry of f where it may be negative, and the carrier whose tables that reads."""
-    if grid is None or (keeps_positive(method) and not force):
-        return None, NOBODY
-    if is_summed(model.projection):
-        return None, NOBODY._replace(f=model.projection.f)
-    carrier = Carrier(model, CHUNK, grid.side)
-    return carrier, carrier.watch()
-
-
-def keeps_positive(method: Kinetic | Macroscopic) -> bool:
-    """Whether f >= 0 is proved under (28): one flux at a face of what stands there, and a force that moves f."""
-    return method.scheme in (1, 4) and (isinstance(method, Macroscopic) or method.force.startswith("shift"))
-
-
-def is_stored(method: Kinetic | Macroscopic) -> bool:
-    """Whether the next state comes out of f, so that f is stored."""
-    return isinstance(method, Kinetic) and method.projection == "re-summed" and not isinstance(method.velocity, Fitted)
+def lifting_of(bed: Plane | Curve) -> Array:
+    """n and its bend in each cell, shape (2, nx + 4), by which cells leave the ground."""
+    return np.array([bed.n, bed.bend]) if isinstance(bed, Curve) else np.zeros((2, 1))
 
 
 def fresh_seen() -> Array:
