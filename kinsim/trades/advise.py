@@ -170,7 +170,7 @@ def _parts(scene: Scene, seen: Advice, cost: dict[str, float]) -> tuple[Part, ..
              f"{MANY} on a grid: {times('grid', 'scheme 4')}; {FEW} fitted: {times('fitted', 'scheme 4')}"),
         Part("every cell in every step", float(np.median(moving)) > 0.5,
              f"{_percent(np.median(moving))} of the cells move half of the time, {_percent(moving[-1])} at the end",
-             "cells asleep are free (a clock of one dt)" + ("; stop_at_rest ends earlier" if settles else "")),
+             "cells at rest are free" + ("; stop_at_rest ends earlier" if settles else "")),
         Part("second order", seen.smeared > SMEARED,
              f"the first puts about {100.0 * seen.smeared:.2g} percent of the mass elsewhere",
              times("second order", "scheme 4")),

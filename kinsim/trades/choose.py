@@ -40,7 +40,7 @@ class Chosen:
         accuracy: What was asked.
         predicted: Its velocity error, at most: L1(h) to the closed-form twin at the end, over the mass at the start and
             what comes in.
-        share: Its cost per step over that of the dearest candidate, in which no cell sleeps.
+        share: Its cost per step over that of the dearest candidate, in which no cell rests.
         why: A sentence.
     """
 
@@ -74,7 +74,7 @@ def choose(
 ) -> Chosen:
     """Pick velocity nodes for a scene: the cheapest whose velocity error is predicted to stay below `accuracy`.
 
-    Costs of a step are timed on the scene; errors, and the share of the cells that sleep with a clock of one dt, are
+    Costs of a step are timed on the scene; errors, and the share of the cells that rest are
     measured on pilots with fewer cells (see `kinsim.trades.pilot`), from the cheapest candidate on, until no other can
     be cheaper. Candidates that the measured order of their kind rules out are left out.
 
@@ -149,7 +149,7 @@ def _own(among: Any, method: Kinetic) -> list[Kinetic]:
 def _cheapest(
     ordered: Sequence[Kinetic], costs: Mapping[Kinetic, Cost], pilots: Pilots, accuracy: float
 ) -> Kinetic | None:
-    """The one of least cost that will do; `ordered` by the cost of a step in which no cell sleeps.
+    """The one of least cost that will do; `ordered` by the cost of a step in which no cell rests.
 
     What would be dearer even if as many of its cells slept as ever did is left out, and so is at first what the order
     of its kind rules out; that is looked at after all from the most nodes of its kind on, as long as these will do.

@@ -74,5 +74,5 @@ def _telling(of: Sequence[Kinetic]) -> list[Kinetic]:
 
 
 def short_clock(scene: Scene, number: float) -> Courant:
-    """About `TIMED_STEPS` steps, in which no cell sleeps."""
+    """About `TIMED_STEPS` steps, in which no cell rests."""
     return Courant(number, TIMED_STEPS * number * scene.cells.dx / scene.fastest)

@@ -1,4 +1,4 @@
-"""Pilot runs: a scene on fewer cells tells how large velocity errors will be on all of them, and how many cells sleep.
+"""Pilot runs: a scene on fewer cells tells how large velocity errors will be on all of them, and how many cells rest.
 
 Pilots run on two thirds and a third of the cells; a scene of fewer than `OWN` cells is its own pilot, whose errors are
 measured, not foreseen, and so is one whose pilots stop, or tell less than is `PROMISED`. Steps are as long beside dx as
@@ -93,7 +93,7 @@ class Pilots:
         self._ahead = math.log2(1.0 / shares[-1])
         self._whole, self._levels = _Level.of(scene, clock, 1.0), [_Level.of(scene, clock, one) for one in shares]
         self._known: dict[str, Record] = {}
-        self._sleeps = isinstance(clock, Fixed)
+        self._same_dt = isinstance(clock, Fixed)
         self._found: dict[Kinetic, Array] = {}
         self._awake: dict[Kinetic, float] = {}
         self._twin = family[0].twin
@@ -114,7 +114,7 @@ class Pilots:
         """Velocity errors over (level, method), each to the twin in the same steps, and shares awake on the last."""
         asked = [(level, method) for level in of for method in methods]
         runs = self._run([Member(level.scene, method, level.clock, DTS) for level, method in asked])
-        same = [level.clock if self._sleeps else run.replay or level.clock
+        same = [level.clock if self._same_dt else run.replay or level.clock
                 for (level, _), run in zip(asked, runs, strict=True)]  # fmt: skip
         twins = self._run([Member(level.scene, self._twin, clock, SAME_STEPS)
                            for (level, _), clock in zip(asked, same, strict=True)])  # fmt: skip
@@ -169,10 +169,10 @@ class Pilots:
         return found * self.margin if found > self.floor else found
 
     def awake(self, method: Kinetic) -> float:
-        """The share of its cells that a run will step, as its finer pilot did; all with a `Courant` clock."""
+        """The share of its cells that a run will step, as its finer pilot did."""
         self.ask([method])
         share = self._awake[method]
-        return share if self._sleeps and math.isfinite(share) else 1.0
+        return share if math.isfinite(share) else 1.0
 
     def keeps(self, method: Kinetic, accuracy: float) -> bool:
         """Whether a pilot was run, and says that the error will be below `accuracy`."""
@@ -182,7 +182,7 @@ class Pilots:
     def least_awake(self) -> float:
         """The least share of all pilots so far, and of their twin, which nodes do not keep awake."""
         known = [share for share in (*self._awake.values(), self._of_twin) if math.isfinite(share)]
-        return min(known, default=1.0) if self._sleeps else 1.0
+        return min(known, default=1.0)
 
     def foreseen(self, method: Kinetic) -> float:
         """About what `predicted` will be, from the order of pilots of the same kind; 0 where there are too few."""
