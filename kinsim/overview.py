@@ -13,6 +13,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from .clock import Fixed, first_courant
+from .diagnostics.resolution import unresolved
 from .read import SceneFile
 from .rooms import rooms
 
@@ -64,6 +65,11 @@ def filled_in(file: SceneFile, keys: Mapping[str, Any]) -> None:
     ):
         table.add_row(key, _figure(value), "[cyan]follows[/]")
     Console().print(table)
+    cells, scene = file.method.velocity_cells, file.scene
+    bound = getattr(cells, "bound", None) or 1.05 * scene.fastest
+    words = unresolved(cells, bound, scene.beta, scene.initial()[0])
+    if words:
+        Console().print(f"[yellow]{escape(words)}[/]", highlight=False)
 
 
 def _figure(value: Any) -> str:

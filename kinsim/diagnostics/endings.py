@@ -24,6 +24,7 @@ from ..solver.march import (
     TOO_SHORT,
 )
 from .lift import lift_words
+from .resolution import unresolved
 
 if TYPE_CHECKING:
     from ..solver.solver import Block, Solver
@@ -114,8 +115,10 @@ def verdict(kind: VerdictKind, message: str, solver: Solver, ledger: Ledger, cel
     if ledger.least_density < 0:
         why = ", as balanced faces allow" if solver.method.scheme in (2, 3) else ""
         notes.append(f"f fell to {ledger.least_density:.3g} somewhere{why}")
-    lifted = lift_words(solver.scene, solver.seen)
-    return Verdict(kind, "; ".join([*notes, lifted] if lifted else notes), solver.step, cell)
+    notes.append(lift_words(solver.scene, solver.seen))
+    if solver.grid is not None:
+        notes.append(unresolved(solver.method.velocity_cells, solver.grid.bound, solver.scene.beta, solver.h))
+    return Verdict(kind, "; ".join(note for note in notes if note), solver.step, cell)
 
 
 def outside(solver: Solver) -> str:
