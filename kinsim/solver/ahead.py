@@ -12,7 +12,8 @@ from numba.core import config
 
 from ..compiled.cache import PACKAGE, cache_folder
 from ..schemes.tile import OPEN, SIZE, End
-from .march import KEPT, SEEN, Asked, Shape, march
+from .march import SEEN, Asked, march
+from .sweep import KEPT, Shape
 from .watch import NOBODY
 
 _others: list[subprocess.Popen[bytes]] = []

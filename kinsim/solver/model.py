@@ -30,7 +30,7 @@ from ..schemes.scheme1 import Upwind
 from ..schemes.scheme4 import Held
 from ..schemes.scheme23 import Balanced, CoupledByCell, CoupledByFace
 from ..schemes.tile import OPEN, RING, STREAM, WALL, End, Ground, Model, Place
-from .march import Shape, judged, looked, met, sent, settled, shown
+from .sweep import Shape, judged, looked, met, sent, settled, shown
 
 KINDS = {"open": OPEN, "wall": WALL, "periodic": RING}
 

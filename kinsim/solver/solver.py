@@ -25,9 +25,7 @@ from .march import (
     BEYOND,
     COUNTED,
     F_MIN,
-    FASTEST,
     H_MIN,
-    KEPT,
     LEFT_OVER,
     LIFT_FROM,
     LIFT_LEAST,
@@ -47,6 +45,7 @@ from .march import (
 )  # fmt: skip
 from .model import model_of, parts_of, shape_of
 from .stages import Stages
+from .sweep import FASTEST, KEPT
 from .watch import NOBODY, watch_of
 
 
