@@ -11,10 +11,12 @@ from numba.core import event
 from rich.console import Console, RenderableType
 from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
+from .compiled import cache_folder
+
 PATIENCE = 1.0
 """Seconds before a bar shows."""
 
-COMPILING = "compiling {what}: usually 5 to 20 s, kept for later runs"
+COMPILING, KEPT = "compiling {what}: usually 5 to 20 s", ", kept for later runs"
 
 STEP = "the step of this method"
 
@@ -55,11 +57,12 @@ class Watched:
 
     def _compiling(self, part: str) -> None:
         """Without a bar it is told in a line, the first time."""
-        words = COMPILING.format(what=PARTS.get(part, STEP)) if part else "preparing"
+        kept = KEPT if cache_folder() else ""
+        words = COMPILING.format(what=PARTS.get(part, STEP)) + kept if part else "preparing"
         self._bar.update(self._task, description=words)
         if self._tell_once:
             self._tell_once = False
-            self._bar.console.print(COMPILING.format(what=STEP))
+            self._bar.console.print(COMPILING.format(what=STEP) + kept)
 
 
 class _Late(Progress):

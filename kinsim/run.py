@@ -23,6 +23,7 @@ from .mean import mean_velocity
 from .method import Kinetic, Macroscopic
 from .scene import Scene
 from .store import write_netcdf
+from .value import of_outside
 
 if TYPE_CHECKING:
     import xarray
@@ -165,12 +166,18 @@ class Run:
 def description(scene: Scene, method: Kinetic | Macroscopic, clock: AnyClock) -> dict[str, Any]:
     """The three as plain keys and values."""
     parts = {"scene": scene, "method": method, "clock": clock}
-    return {name: TypeAdapter(type(thing)).dump_python(thing, mode="json") for name, thing in parts.items()}
+    return {name: _keys(type(thing), thing) for name, thing in parts.items()}
 
 
 def describe(kind: Any, thing: Any) -> str:
     """A scene, method or clock as JSON with sorted keys."""
-    return json.dumps(TypeAdapter(kind).dump_python(thing, mode="json"), sort_keys=True)
+    return json.dumps(_keys(kind, thing), sort_keys=True)
+
+
+def _keys(kind: Any, thing: Any) -> dict[str, Any]:
+    keys = TypeAdapter(kind).dump_python(thing, mode="json")
+    own = of_outside(thing)
+    return {**keys, "outside": own} if own else keys
 
 
 def _attrs(long_name: str) -> dict[str, str]:

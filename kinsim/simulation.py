@@ -51,7 +51,7 @@ class Simulation:
         self.dumps = recorders(dumps, scene, method, clock)
         self.causes = Causes(scene, require_density(method).order) if causes else None
         self.history = History(cadence, Ledger(scene, method), self.causes)
-        self.own = [adopt(observer) for observer in observers]
+        self.own = adopt(observers)
         self.observers: list[Observer] = [*([self.causes] if self.causes else []), self.history, *self.dumps, *self.own]
         self.solver = Solver(scene, method, force)
         self.keeper: Keeper | None = None
@@ -69,6 +69,7 @@ class Simulation:
         self.began = time.perf_counter()
         for observer in self.observers:
             observer.start(solver)
+        self._hear()
         if lifted and self.scene.chute.lifting == "stop":  # type: ignore[union-attr]
             self.verdict = verdict("lifted-off", LIFTED_WORDS, solver, self.history.ledger)
 
@@ -86,8 +87,8 @@ class Simulation:
             pass
         if self.verdict is None:
             self.verdict = verdict("interrupted", "interrupted", self.solver, self.history.ledger)
-            if self.keeper:
-                self.keeper.put_down(self.kept())
+        if self.keeper and self.verdict.kind in ("interrupted", "observer-failed", "stopped"):
+            self.keeper.put_down(self.kept())
         return self.finish()
 
     def advance(self, most: float = math.inf) -> None:
@@ -106,23 +107,22 @@ class Simulation:
         self.dts.append(block.dts)
         stop = ""
         for observer in self.observers if block.dts.size else ():
-            if observer in self.own and observer.every and block.step % observer.every:
-                continue  # the block ended here for somebody else
             try:
                 said = observer.look(block)
-            except InputError as error:
+            except InputError as error:  # a row more does not fit
                 self.verdict = verdict("refused", f"{error}; stopped", self.solver, self.history.ledger)
-                continue
-            except Exception as error:  # of somebody's own; the run keeps what it has
-                if observer not in self.own:
-                    raise
-                said = f"observer {observer.name!r} failed: {type(error).__name__}: {error}"
-                self.verdict = verdict("observer-failed", f"{said}; stopped", self.solver, self.history.ledger)
                 continue
             stop = f"stopped by {observer.name!r}: {said}" if said and not stop else stop
         self.conclude(block)
         if stop and self.verdict is None:
             self.verdict = verdict("stopped", stop, self.solver, self.history.ledger)
+        self._hear()
+
+    def _hear(self) -> None:
+        """End the run if an observer of somebody's own has failed; it keeps all that it has."""
+        failed = next((observer.failure for observer in self.own if observer.failure), "")
+        if failed and self.verdict is None:
+            self.verdict = verdict("observer-failed", f"{failed}; stopped", self.solver, self.history.ledger)
 
     def block(self, most: float = math.inf) -> Block:
         """A block of steps up to where somebody wants to look."""
@@ -161,6 +161,10 @@ class Simulation:
         trouble = self.keeper.trouble if self.keeper else ""
         ended = replace(self.verdict, message=f"{self.verdict.message}; {trouble}") if trouble else self.verdict
         cells = solver.step * self.scene.cells.count
+        observed = {observer.name: observer.result() for observer in self.own}
+        late = next((observer.failure for observer in self.own if observer.failure), "")
+        if late and ended.kind != "observer-failed":
+            ended = replace(ended, message=f"{ended.message}; {late}")
         return Run(
             scene=self.scene, method=self.method, clock=self.clock, t=np.array(history.times),
             h=np.array([h for h, _ in history.states]), q=np.array([q for _, q in history.states]),
@@ -168,7 +172,7 @@ class Simulation:
             entries=history.ledger.columns(), awake=float(solver.seen[SWEPT]) / cells if cells else 1.0,
             dumps={recorder.dump.name: recorder.result() for recorder in self.dumps},
             causes=self.causes.result() if self.causes else None,
-            observed={observer.name: observer.result() for observer in self.own},
+            observed=observed,
         )  # fmt: skip
 
     def about(self) -> dict[str, Any]:
@@ -185,8 +189,8 @@ class Simulation:
         spent = np.array(time.perf_counter() - self.began)
         own = {"dts": np.concatenate([np.empty(0), *self.dts]), "spent": spent, **self.solver.kept()}
         kept = under("loop", own)
-        for observer in self.observers:
-            kept |= under(f"observer {observer.name}", observer.kept())
+        for number, observer in enumerate(self.observers):
+            kept |= under(f"observer {number}", observer.kept())
         return kept
 
     def restore(self, kept: Kept) -> None:
@@ -195,5 +199,5 @@ class Simulation:
         self.began = time.perf_counter() - float(own["spent"])
         self.dts = [own["dts"]]
         self.solver.restore(own)
-        for observer in self.observers:
-            observer.restore(part(f"observer {observer.name}", kept))
+        for number, observer in enumerate(self.observers):
+            observer.restore(part(f"observer {number}", kept))

@@ -7,7 +7,7 @@ adds the two number types that a scene file knows.
 from __future__ import annotations
 
 import hashlib
-import inspect
+from dataclasses import fields, is_dataclass
 from typing import Annotated, Any, TypeVar, dataclass_transform
 
 from pydantic import (
@@ -24,6 +24,7 @@ from pydantic.dataclasses import dataclass as validated_dataclass
 from .errors import InputError
 from .expression import evaluate
 from .finding import one_line
+from .source import is_built_in, told
 
 T = TypeVar("T")
 
@@ -75,25 +76,28 @@ def checked(place: str, family: Any, given: Any) -> Any:
 def described_outside(given: Any, write: SerializerFunctionWrapHandler) -> Any:
     """A part as keys and values; one from outside of the package by its class, its numbers and a hash of its source."""
     own = given if hasattr(given, "__qualname__") else type(given)
-    if isinstance(given, (dict, str, type(None))) or own.__module__.startswith("kinsim."):
+    if isinstance(given, (dict, str, type(None))) or is_built_in(own):
         return write(given)
     told = {"outside": f"{own.__module__}.{own.__qualname__}", "source": source_hash(own)}
     return told | ({} if own is given else {"numbers": repr(given)})
 
 
 def source_hash(part: Any) -> str:
-    """A hash of the source of a class or function; of its compiled code where there is no source."""
-    part = getattr(part, "py_func", part)
-    try:
-        text = inspect.getsource(part).encode()
-    except (OSError, TypeError):
-        codes = [part] if hasattr(part, "__code__") else list(vars(part).values())
-        text = b"".join(
-            code.__code__.co_code + repr(code.__code__.co_consts).encode()
-            for code in codes
-            if hasattr(code, "__code__")
-        )
-    return hashlib.sha256(text).hexdigest()
+    """A hash of the source of a class or function, and of all that it reads."""
+    return hashlib.sha256(told(part).encode()).hexdigest()
+
+
+def of_outside(thing: Any, path: str = "") -> dict[str, str]:
+    """Values in a value whose class is not one of the package, by their places: class and hash of its source."""
+    found: dict[str, str] = {}
+    if not is_dataclass(thing):
+        return found
+    cls = type(thing)
+    if not is_built_in(cls):
+        found[path or "itself"] = f"{cls.__module__}.{cls.__qualname__} {source_hash(cls)}"
+    for field in fields(thing):
+        found |= of_outside(getattr(thing, field.name), f"{path}.{field.name}" if path else field.name)
+    return found
 
 
 def kind(name: str) -> Any:

@@ -17,7 +17,7 @@ from kinsim.kinetic.force import FORCES
 from kinsim.measure.seams import STAGES
 from kinsim.method import ProjectionName
 from kinsim.plot import plot_density, plot_seams
-from kinsim.progress import COMPILING, STEP
+from kinsim.progress import COMPILING, KEPT, STEP
 
 SMALL = ["--set", "cells.count=40", "--set", "clock.steps=40", "--set", "method.velocity.count=16"]
 
@@ -53,7 +53,7 @@ def test_dumps_go_into_the_file_and_onto_the_picture(tmp_path: Path) -> None:
         "--dump", "stage=transport,every=10,x=-2:2,xi=-1:1", "--dump", "name=M,stage=equilibrium,every=20",
     )  # fmt: skip
     assert code == 0
-    assert complaint in ("", COMPILING.format(what=STEP) + "\n")
+    assert complaint in ("", COMPILING.format(what=STEP) + KEPT + "\n")
     assert "what each stage did" in said
     assert picture.read_bytes().startswith(b"\x89PNG")
     with xarray.open_dataset(file, engine="h5netcdf") as kept:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import random
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,11 +16,15 @@ from states import random_states, scene_with
 
 from kinsim import (
     Arc,
+    Blocks,
+    Cells,
+    Checkpoint,
     Coulomb,
     Courant,
     Fitted,
     Fixed,
     Inflow,
+    InputError,
     Kinetic,
     Macroscopic,
     Profile,
@@ -27,6 +32,7 @@ from kinsim import (
     SmoothChute,
     Uniform,
     Window,
+    resume,
     simulate,
 )
 from kinsim.clock import AnyClock
@@ -260,3 +266,62 @@ def test_an_observer_ends_a_run_which_keeps_everything(raises: bool) -> None:
     np.testing.assert_array_equal(run.t, whole.t[:7])
     np.testing.assert_array_equal(run.h, whole.h[:7])
     np.testing.assert_array_equal(run.entries["mass"], whole.entries["mass"][:7])
+
+
+@pytest.mark.parametrize("where", ["start", "next_step", "result", "kept"])
+def test_whatever_an_observer_raises_loses_nothing(where: str, tmp_path: Path) -> None:
+    """The verdict names it, the states are there, and what is put down can be taken up again."""
+
+    class Bad(Third):
+        name = "bad"
+
+    def broken(self: Bad, *given: Any) -> None:
+        raise RuntimeError("boom")
+
+    path = str(tmp_path / "run")
+    sound = simulate(sliding(), Macroscopic(4), Fixed(0.005, 20), 1, observers=[Third()])
+    setattr(Bad, where, broken)
+    keep = Checkpoint(path, every=0.0)
+    run = simulate(sliding(), Macroscopic(4), Fixed(0.005, 20), 1, observers=[Bad(), Third()], checkpoint=keep)
+    assert "observer 'bad' failed: RuntimeError: boom" in str(run.verdict)
+    assert run.observed["bad"] is None or where != "result"
+    np.testing.assert_array_equal(run.h, sound.h[: run.steps + 1])
+    if where == "next_step":  # it stopped there, and goes on once the fault is mended
+        again = resume(path, scene=sliding(), observers=[type("Mended", (Third,), {"name": "bad"})(), Third()])
+        np.testing.assert_array_equal(again.h, sound.h)
+        assert again.verdict.kind == "finished"
+
+
+def test_observers_have_names_of_their_own_and_no_power_over_the_state() -> None:
+    """Two of one kind are both kept; the state that they see is to be read."""
+    run = simulate(sliding(), Macroscopic(4), Fixed(0.005, 6), observers=[Third(), Third()])
+    assert run.observed == {"third": [3, 6], "third #2": [3, 6]}
+
+    def spoil(block: Any) -> None:
+        block.h[:] = 7.0
+
+    run = simulate(sliding(), Macroscopic(4), Fixed(0.005, 6), observers=[spoil])
+    assert run.verdict.kind == "observer-failed"
+    assert "read-only" in str(run.verdict)
+    with pytest.raises(InputError, match="every = '3'"):
+        simulate(sliding(), Macroscopic(4), Fixed(0.005, 6), observers=[type("Odd", (Third,), {"every": "3"})()])
+    with pytest.raises(InputError, match="give an object"):
+        simulate(sliding(), Macroscopic(4), Fixed(0.005, 6), observers=[Third])
+
+
+@pytest.mark.parametrize(("dt", "steps", "at"), [(0.01, 30, 0.015), (0.1, 5, 0.25), (1e-3, 97, 0.0495)])
+def test_a_requested_time_makes_a_run_of_fixed_steps_no_longer(dt: float, steps: int, at: float) -> None:
+    """A step is cut in two, and the clock ends when it says."""
+    scene = Scene(Cells(0, 1, 20), Blocks((0.5,), (0.3, 0.1)), epsilon=0.01)
+    run = simulate(scene, Macroscopic(4), Fixed(dt, steps), save_at=[at])
+    assert run.t.tolist() == [0.0, at, pytest.approx(steps * dt, rel=1e-14)]
+    assert run.steps == steps + 1
+
+
+def test_rows_end_with_the_clock() -> None:
+    """Whatever multiples of end/rows round to."""
+    scene = Scene(Cells(0, 1, 20), Blocks((0.5,), (0.3, 0.1)), epsilon=0.01)
+    for clock, rows in ((Courant(0.45, 0.7), 3), (Fixed(1e-3, 97), 10)):
+        run = simulate(scene, Macroscopic(4), clock, rows=rows)
+        assert run.t.size == rows + 1
+        assert run.t[-1] == clock.end

@@ -14,7 +14,7 @@ import pytest
 from covering import covering
 from states import scene_with
 
-from kinsim import Coulomb, Fixed, InputError, Macroscopic, Scene, simulate
+from kinsim import ConstantSlope, Coulomb, Fixed, InputError, Macroscopic, Profile, Run, Scene, simulate
 
 FILE = '''
 import math
@@ -38,6 +38,18 @@ class Viscous(NamedTuple):
 
 class Wet(Coulomb):
     """Another law by name only."""
+
+
+MORE = 0.0
+
+
+class Global(NamedTuple):
+    """Reads a value of its module."""
+
+    mu: float
+
+    def resistance(law, h, v, n):
+        return (law.mu + MORE) * n
 
 
 def closed(h_left, u_left, h_right, u_right, beta):
@@ -247,3 +259,51 @@ def test_provenance_tells_a_flux_of_ones_own(mine: ModuleType) -> None:
     assert len({built_in["hash"], closed["hash"], hll["hash"]}) == 3
     assert "written_outside.closed" in closed["method"]
     assert "written_outside.hll" in hll["method"]
+
+
+# ---- what is told of them --------------------------------------------------------------------------------------------
+
+
+def hashed(run: Run) -> str:
+    return str(run.provenance()["hash"])
+
+
+def test_other_numbers_never_have_the_same_hash(mine: ModuleType) -> None:
+    """A value in a closure, a global value that changes between two runs, and a subclass of anything."""
+    seen: dict[str, bytes] = {}
+
+    def add(scene: Scene, method: Macroscopic, clock: Fixed) -> None:
+        run = simulate(scene, method, clock)
+        assert seen.setdefault(hashed(run), run.q[-1].tobytes()) == run.q[-1].tobytes()
+
+    def weaker(share: float) -> object:
+        return lambda *states: tuple(share * part for part in mine.masked(*states))
+
+    scene, clock = wet(), Fixed(1e-3, 10)
+    for share in (1.0, 0.9):
+        add(scene, Macroscopic(1, flux=weaker(share)), clock)
+    for value in (0.2, 0.4):
+        mine.MORE = value
+        add(replace(scene, friction=mine.Global(0.1)), Macroscopic(4), clock)
+    for pull in (0.1, 0.2):
+        steeper = type("Steeper", (ConstantSlope,), {"sin": property(lambda slope, pull=pull: pull)})
+        add(replace(scene, chute=steeper(0.5)), Macroscopic(4), clock)
+    add(scene, Macroscopic(4), clock)
+    assert len(seen) == len(set(seen.values())) == 7
+
+
+def test_a_flux_that_numba_cannot_compile_is_called_face_by_face(mine: ModuleType) -> None:
+    """With plain helpers, as an object; what it raises is what the run ends with."""
+
+    class Object:
+        def __call__(self, h_left: float, u_left: float, h_right: float, u_right: float, beta: float) -> object:
+            if h_left > 5.0:
+                raise RuntimeError("too high")
+            return mine.hll(h_left, u_left, h_right, u_right, beta) if h_left < 9.0 else {}
+
+    runs = [simulate(wet(), Macroscopic(1, flux=flux), Fixed(1e-3, 10)) for flux in (mine.hll, Object())]
+    np.testing.assert_allclose(runs[1].h, runs[0].h, rtol=1e-14)
+    high = replace(wet(), heap=Profile(np.full(40, 6.0)))
+    assert "flux Object: RuntimeError: too high" in str(
+        simulate(high, Macroscopic(1, flux=Object()), Fixed(1e-3, 10)).verdict
+    )

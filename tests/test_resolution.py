@@ -12,7 +12,7 @@ from kinsim import Fixed, Kinetic, Uniform, Window, simulate
 from kinsim.diagnostics.resolution import unresolved
 
 
-@pytest.mark.parametrize("cells", [Uniform(8, 3.0), Window(32.0), Window(0.3)], ids=["8 cells", "dxi 32", "dxi 0.3"])
+@pytest.mark.parametrize("cells", [Uniform(8, 3.0), Window(32.0), Window(0.5)], ids=["8 cells", "dxi 32", "dxi 0.5"])
 def test_the_number_that_is_told_is_enough(cells: Uniform | Window) -> None:
     """A window of 32 meant as a count loses all mass; what is asked for in its place resolves M."""
     scene = SCENES["silo"][0]

@@ -7,7 +7,6 @@ written costs a compilation, no run.
 from __future__ import annotations
 
 import hashlib
-import inspect
 import os
 import pickle
 import shutil
@@ -23,6 +22,8 @@ import numba
 import platformdirs
 from numba.core import types
 from numba.core.compiler import CompileResult
+
+from ..source import is_built_in, told
 
 PACKAGE = Path(__file__).parent.parent
 
@@ -79,26 +80,6 @@ def _source_of(module: str) -> str | None:
         return None
 
 
-def _frozen_in(cls: type) -> str:
-    """The global values that formulas of a class from outside read, which their code freezes."""
-    if cls.__module__.startswith("kinsim."):
-        return ""
-    read: dict[str, str] = {}
-    for formula in [cls, *vars(cls).values()]:
-        if inspect.isfunction(formula):
-            found = inspect.getclosurevars(formula)
-            read |= {name: _told(value) for name, value in {**found.globals, **found.nonlocals}.items()}
-    return repr(sorted(read.items()))
-
-
-def _told(value: Any) -> str:
-    """A value that a formula reads; a function or class by its source."""
-    try:
-        return inspect.getsource(getattr(value, "py_func", value))
-    except (OSError, TypeError):
-        return repr(value)
-
-
 def _classes_in(kind: Any) -> Iterator[type]:
     """The classes of values in a numba type."""
     if isinstance(kind, types.BaseNamedTuple):
@@ -146,21 +127,26 @@ class CodeCache:
         try:
             content = pickle.dumps(data._reduce(), protocol=-1)
             with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as file:
-                file.write(hashlib.sha256(content).digest() + content)
-            os.replace(file.name, path)
-        except Exception:  # a full disk, or a value that cannot be pickled: it is compiled again next time
+                try:
+                    file.write(hashlib.sha256(content).digest() + content)
+                    file.close()
+                    os.replace(file.name, path)
+                except OSError:  # a full disk: it is compiled again next time
+                    os.unlink(file.name)
+        except Exception:  # a value that cannot be pickled, a folder that is gone: likewise
             return
 
     def _path(self, signature: Any, target: Any) -> Path | None:
         """The file; None if a class of the signature belongs to this process alone, or if nothing can be kept."""
-        folder, told = cache_folder(), []
+        folder, sources = cache_folder(), list[Any]()
         for cls in sorted({c for kind in signature for c in _classes_in(kind)} | set(self._classes), key=repr):
             made_of = getattr(cls, "made_of", cls)
             source = _source_of(made_of.__module__)
             if source is None or "<" in made_of.__qualname__:
                 return None
-            told.append((made_of.__module__, made_of.__qualname__, source, _frozen_in(made_of)))
+            reads = "" if is_built_in(made_of) else told(made_of)
+            sources.append((made_of.__module__, made_of.__qualname__, source, reads))
         if folder is None:
             return None
-        key = repr((self._told, str(signature), told, target.codegen().magic_tuple(), sys.version_info[:2]))
+        key = repr((self._told, str(signature), sources, target.codegen().magic_tuple(), sys.version_info[:2]))
         return folder / f"{self._name}-{hashlib.sha256(key.encode()).hexdigest()[:24]}.code"

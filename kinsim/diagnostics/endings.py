@@ -140,6 +140,9 @@ def fault(solver: Solver) -> tuple[str, int | None]:
     stages = solver.stages(solver.h, solver.q, solver.attempted, solver.t)
     h, q = stages["h1"], stages["q1"]
     bad = ~(np.isfinite(h) & np.isfinite(q))
+    trouble = getattr(solver.model.flux, "trouble", None)
+    if bad.any() and trouble:
+        return trouble[-1], int(np.argmax(bad))
     if bad.any():
         return "h or q is not finite", int(np.argmax(bad))
     speed = np.abs(q) / np.where(h > 0.0, h, math.inf)

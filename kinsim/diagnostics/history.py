@@ -51,7 +51,7 @@ class Cadence:
             self.times = _times(save_at, clock.end)
             self.asked["save_at"] = self.times.tolist()
         elif rows is not None:
-            self.times = clock.end * np.arange(1, rows + 1) / rows
+            self.times = np.linspace(0.0, clock.end, rows + 1)[1:]
         elif save_every is None and isinstance(clock, Courant):
             self.past = clock.end / ROWS
         elif save_every is None and not isinstance(clock, Courant):

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import inspect
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..checkpoint import Kept
+from ..errors import InputError
 
 if TYPE_CHECKING:
     from ..solver.solver import Block, Solver
@@ -54,19 +57,64 @@ class Observer:
 
 
 class Adopted(Observer):
-    """Somebody's own object with a method `look`, or a function of a block; what else it lacks has the defaults."""
+    """Somebody's own object with a method `look`, or a function of a block; what else it lacks has the defaults.
 
-    def __init__(self, own: Any) -> None:
-        self.own = own
-        self.name = str(getattr(own, "name", getattr(own, "__name__", type(own).__name__)))
+    Attributes:
+        failure: What it raised, in words, or nothing; from then on it is asked no more.
+    """
+
+    def __init__(self, own: Any, name: str) -> None:
+        self.own, self.name, self.failure = own, name, ""
         self.every = getattr(own, "every", None)
-        looks = getattr(own, "look", own)
-        for method in ("start", "next_step", "next_time", "next_past", "result", "kept", "restore"):
-            if hasattr(own, method):
-                setattr(self, method, getattr(own, method))
-        self.look = looks  # type: ignore[method-assign]
+        if self.every is not None and not (isinstance(self.every, int) and self.every >= 1):
+            raise InputError(f"observer {name!r}: every = {self.every!r}; give a whole number from 1 on, or None")
+        if inspect.isclass(own) or not callable(getattr(own, "look", own)):
+            raise InputError(f"observer {name!r}: give an object with a method look(block), or a function of a block")
+
+    def start(self, solver: Solver) -> None:
+        self._asked("start", None, solver)
+
+    def next_step(self, step: int) -> float:
+        return float(self._asked("next_step", super().next_step(step), step))
+
+    def next_time(self, t: float) -> float:
+        return float(self._asked("next_time", math.inf, t))
+
+    def next_past(self, t: float) -> float:
+        return float(self._asked("next_past", math.inf, t))
+
+    def look(self, block: Block) -> str | None:
+        if self.every and block.step % self.every:
+            return None  # the block ended here for somebody else
+        said = self._asked("look", None, block)
+        return said if isinstance(said, str) and said else None
+
+    def result(self) -> Any:
+        return self._asked("result", None)
+
+    def kept(self) -> Kept:
+        return dict(self._asked("kept", {}))
+
+    def restore(self, kept: Kept) -> None:
+        self._asked("restore", None, kept)
+
+    def _asked(self, method: str, default: Any, *given: Any) -> Any:
+        """The answer of the object to a method; the default where it has none, or raises something."""
+        answer = getattr(self.own, method, self.own if method == "look" else None)
+        if answer is None or (self.failure and method not in ("result", "kept")):
+            return default
+        try:
+            return answer(*given)
+        except Exception as error:
+            self.failure = self.failure or f"observer {self.name!r} failed: {type(error).__name__}: {error}"
+            return default
 
 
-def adopt(observer: Any) -> Observer:
-    """An observer, of whatever was given."""
-    return observer if isinstance(observer, Observer) else Adopted(observer)
+def adopt(observers: Sequence[Any]) -> list[Adopted]:
+    """Observers, each with a name of its own, of whatever was given."""
+    made: list[Adopted] = []
+    for own in observers:
+        name = str(getattr(own, "name", "") or getattr(own, "__name__", "") or type(own).__name__)
+        taken = sum(other.name.partition(" #")[0] == name for other in made)
+        made.append(Adopted(own, f"{name} #{taken + 1}" if taken else name))
+    return made

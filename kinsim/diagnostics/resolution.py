@@ -35,7 +35,7 @@ def unresolved(cells: Uniform | Window | None, bound: float, beta: float | Array
     thin = float(width[np.searchsorted(mass, SHARE * mass[-1])])
     for covered, wanted, where in ((float(width[-1]), WIDEST, "at its widest"), (thin, THINNEST, "in thin layers")):
         if covered < wanted * dxi:
-            fine = min(float(width[-1]) / WIDEST, thin / THINNEST)
+            fine = 0.95 * min(float(width[-1]) / WIDEST, thin / THINNEST)  # so that it may be told in two digits
             remedy = f"dxi <= {fine:.2g}" if isinstance(cells, Window) else f"{2 * math.ceil(bound / fine)} cells"
             return f"M covers {covered / dxi:.2g} velocity cells {where}; take {remedy}"
     return ""

@@ -7,7 +7,6 @@ with the faces of a tile at a time.
 from __future__ import annotations
 
 import ctypes
-import inspect
 import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -22,20 +21,18 @@ from ..errors import InputError
 from ..schemes.bed import face
 from ..schemes.formulas import drained
 from ..schemes.questions import rows
-from ..schemes.tile import F1, F2, HL, HR, SHARE, TILE, WALL, H, U
+from ..schemes.tile import F1, F2, HL, HR, SHARE, WALL, H, U
+from ..source import told
 
 Flux = Callable[..., Any]
 
 TAKES = "(h_left, u_left, h_right, u_right, beta)"
 
-BETAS = np.empty(TILE + 8)
-"""Where the beta of the faces of a tile stands for array code."""
-
 OF_ROWS = ctypes.CFUNCTYPE(None, *[ctypes.c_void_p] * 7, ctypes.c_long)
 
 
 class Outside(NamedTuple):
-    """A flux of two states; a class of its own for each function has it as `between`, or as `of_rows`."""
+    """A flux of two states; a class of its own for each function has it as `between`, or as `faces_between`."""
 
     def flux_of_cells(flux, bed, place, low, high, f1, f2, room):
         faces_between(flux, bed, place, low, high, H, U, H + 1, U, f1, f2, room)
@@ -79,7 +76,7 @@ def faces_between(
         room[f1 + k], room[f2 + k] = F[0], F[1]
 
 
-_made: dict[Flux, Any] = {}
+_made: dict[Any, Any] = {}
 
 
 def outside(function: Flux) -> Outside:
@@ -88,30 +85,41 @@ def outside(function: Flux) -> Outside:
     Raises:
         InputError: It takes or gives something else.
     """
-    if function not in _made:
+    key = function, told(function)
+    if key not in _made:
         plain = getattr(function, "py_func", function)
-        name = getattr(plain, "__name__", "flux")
+        like = plain if hasattr(plain, "__qualname__") else type(plain)
+        name, of_arrays = like.__name__, False
         try:
-            given = function(0.4, 0.1, 0.3, -0.2, 0.9)
-            first, second = (float(part) for part in given)
+            first, second = (float(part) for part in function(0.4, 0.1, 0.3, -0.2, 0.9))
         except Exception as error:
             try:
                 first, second = (float(part[0]) for part in function(*np.full((5, 1), 0.4)))
+                of_arrays = True
             except Exception:
                 raise InputError(f"flux {name}: takes {TAKES} and gives (F1, F2), but: {error}") from None
         if not (math.isfinite(first) and math.isfinite(second)):
             raise InputError(f"flux {name}: gives F = ({first:g}, {second:g}) between two wet states; give numbers")
-        answers = _compiled(plain) or _by_rows(function)
-        made = type(name, (Outside,), answers | {"__module__": plain.__module__, "__qualname__": plain.__qualname__})
-        _made[function] = made()
-    return _made[function]  # type: ignore[no-any-return]
+        answers = _compiled(plain) or _by_rows(function, name, of_arrays or _takes_arrays(function))
+        made = type(name, (Outside,), answers | {"__module__": like.__module__, "__qualname__": like.__qualname__})
+        _made[key] = made()
+    return _made[key]  # type: ignore[no-any-return]
+
+
+def _takes_arrays(function: Flux) -> bool:
+    """Whether a function that takes numbers takes arrays, too, with the same result."""
+    states = np.array([[0.4, 0.0, 0.3], [0.1, 0.0, -0.9], [0.3, 0.2, 0.0], [-0.2, 0.5, 0.0], [0.9, 0.9, 0.9]])
+    try:
+        together = np.array([np.broadcast_to(part, 3) for part in function(*states)])
+        return np.array_equal(together, np.array([function(*map(float, state)) for state in states.T]).T)
+    except Exception:
+        return False
 
 
 def _compiled(plain: Flux) -> dict[str, Any] | None:
     """The function as one of numbers, if numba can compile it."""
     if config.DISABLE_JIT:
         return {"between": lambda flux, *states: plain(*states)}
-    takes = ", ".join(list(inspect.signature(plain).parameters)[:5])
     try:
         alone = numba.njit(error_model="numpy")(plain)
         alone.compile((types.float64,) * 5)
@@ -120,22 +128,28 @@ def _compiled(plain: Flux) -> dict[str, Any] | None:
             return None
     except Exception:
         return None
-    names = {"function": alone}
-    exec(f"def between(flux, {takes}):\n    return function({takes})", names)
-    return {"between": names["between"]}
+
+    def between(flux, h_left, u_left, h_right, u_right, beta):  # type: ignore[no-untyped-def]
+        return alone(h_left, u_left, h_right, u_right, beta)
+
+    return {"between": between}
 
 
-def _by_rows(function: Flux) -> dict[str, Any]:
-    """The function as one of arrays, called back from compiled code."""
+def _by_rows(function: Flux, name: str, of_arrays: bool) -> dict[str, Any]:
+    """The function, called back from compiled code with the faces of a tile; `trouble` says what it raised."""
+    trouble: list[str] = []
 
     def call(*given: Any) -> None:
         count = given[-1]
         arrays = [
             np.ctypeslib.as_array(ctypes.cast(at, ctypes.POINTER(ctypes.c_double)), (count,)) for at in given[:-1]
         ]
+        states = [part.copy() for part in arrays[:5]]
         try:
-            arrays[5][:], arrays[6][:] = function(*(part.copy() for part in arrays[:5]))
-        except Exception:  # it cannot pass through compiled code; not-a-number ends the run
+            one_by_one = [] if of_arrays else [function(*face) for face in zip(*states, strict=True)]
+            arrays[5][:], arrays[6][:] = function(*states) if of_arrays else np.array(one_by_one).T
+        except Exception as error:  # it cannot pass through compiled code; not-a-number ends the run
+            trouble.append(f"flux {name}: {type(error).__name__}: {error}")
             arrays[5][:] = arrays[6][:] = np.nan
 
     pointer = OF_ROWS(call)
@@ -150,4 +164,4 @@ def _by_rows(function: Flux) -> dict[str, Any]:
             room[f2 + low : f2 + high].ctypes, high - low,
         )  # fmt: skip
 
-    return {"faces_between": faces_between}
+    return {"faces_between": faces_between, "trouble": trouble}

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from ..compiled import short_question
 from ..errors import InputError
+from ..source import is_built_in, told
 from .bed import LEAST
 
 FORMULAS = ("resistance", "after", "brought", "brought_midway", "holds", "grip")
@@ -103,7 +104,23 @@ def law_of(friction: Any) -> Any:
         raise InputError(f"friction: {type(friction).__name__} is no law; give a NamedTuple or dataclass of numbers")
     if not callable(getattr(cls, "resistance", None)):
         raise InputError(f"friction: {cls.__name__} has no formula resistance(law, h, v, n)")
-    return cls(*map(float, numbers))
+    return as_it_reads(cls)(*map(float, numbers))
+
+
+def as_it_reads(cls: type) -> type:
+    """The class, or another one like it where values that its formulas read have changed since it was compiled."""
+    made_of = getattr(cls, "made_of", cls)
+    if is_built_in(made_of):
+        return cls
+    reading = _readings.setdefault(cls, {})
+    text = told(made_of)
+    if text not in reading:
+        again = {"made_of": made_of, "__module__": cls.__module__, "__qualname__": cls.__qualname__}
+        reading[text] = type(cls.__name__, (cls,), again) if reading else cls
+    return reading[text]
+
+
+_readings: dict[type, dict[str, type]] = {}
 
 
 @cache

@@ -55,7 +55,11 @@ the edge of the window, so that somebody has to look at it."""
     T, BEFORE, TICKS, LEFT_OVER, STILL, IN_LEFT_ALL, IN_RIGHT_ALL, MADE_ALL, LOST_ALL, MENDED_ALL, H_MIN, U_MAX,
     WORST, REACH, BEYOND, SWEPT, LIFT_MOST, LIFT_EVER, LIFT_FROM, LIFT_TO, LIFT_SINCE, LIFT_LEAST, F_MIN,
 ) = range(SEEN := 23)  # fmt: skip
-"""What is seen of a run: see `solver.State`."""
+"""What is seen of a run: the time, now and before the last step; ticks of a clock, and what is left over of a step that
+was cut; steps in a row without motion; mass that came in, appeared where a face has two fluxes, left the window, was
+mended; since a row of the ledger least h, largest |u|, Courant number; the fastest state, and the fastest beyond the
+window; cells that were swept; of cells that left the ground: most at once, since a row and ever, from where to where,
+since when, and the least normal force; the least f since a row."""
 
 ROUNDING = 1e-12
 """By so much may Courant numbers and velocity windows be passed: the rounding of their own computation."""
@@ -180,7 +184,7 @@ def march(
         elif not courant <= asked.limit or not courant < math.inf:
             reason = COURANT
         may_leave, leaves = not whole and max(fast, streams) + dt * asked.pull > asked.tight, False
-        before, reach, still = 1.0, max(fast, streams), True
+        before, reach, still, swept = 1.0, max(fast, streams), True, 0.0
         for tile in range(tiles if reason == COUNTED else 0):
             now_moved = kept[tile, MOVED_RIGHT]
             first, last = tile == 0, tile == tiles - 1
@@ -192,7 +196,7 @@ def march(
                 begin = 2 + tile * TILE
                 place = Place(begin, min(TILE, nx + 2 - begin), first, last)
                 sweep(shape, parts, place, h, q, dt, h1, q1, whole, rooms[tile if whole else 0], watch, kept[tile])
-                seen[SWEPT] += 0.0 if kept[tile, RESTS] > 0.0 else place.n
+                swept += 0.0 if kept[tile, RESTS] > 0.0 else place.n
                 if may_leave and (kept[tile, RESTS] == 0.0 or shape.summed > 0.0):
                     leaves = leaves or leave_window(shape, place.n, rooms[0])
             reach, still = max(reach, kept[tile, FACES]), still & (kept[tile, CHANGE] == 0.0)
@@ -211,6 +215,7 @@ def march(
             return steps, reason
         h, q, h0, q0, h1, q1 = h1, q1, h, q, h0, q0
         seen[BEFORE], seen[T] = seen[T], after
+        seen[SWEPT] += swept
         note(left.kind == RING, kept, dt, dx, courant, seen)
         high = largest(kept, MOST_H)
         seen[STILL] = seen[STILL] + 1.0 if largest(kept, MOST_Q) <= asked.still + asked.still_per_h * high else 0.0

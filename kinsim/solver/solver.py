@@ -140,13 +140,13 @@ class Solver:
 
     @property
     def h(self) -> Array:
-        """Heights, shape (nx,)."""
-        return self._states[0][0][2:-2]
+        """Heights, shape (nx,), to read."""
+        return read_only(self._states[0][0][2:-2])
 
     @property
     def q(self) -> Array:
-        """Momenta, shape (nx,)."""
-        return self._states[0][1][2:-2]
+        """Momenta, shape (nx,), to read."""
+        return read_only(self._states[0][1][2:-2])
 
     @property
     def fastest(self) -> float:
@@ -169,7 +169,7 @@ class Solver:
     def march(self, clock: AnyClock, most: int, until: float = math.inf, past: float = math.inf) -> Block:
         """At most `most` steps, to land on the time `until`, and no further than the first one at or after `past`."""
         planned, until = clock.planned, min(until, clock.until)
-        most = int(min(most, clock.ticks - self.seen[TICKS] + float(self.seen[LEFT_OVER] > 0.0)))
+        most = int(min(most, clock.ticks - self.seen[TICKS]))  # what is left over of a step is one of these
         asked = asked_of(self, clock, until, past)
         dts, done, reason = np.empty(most), 0, COUNTED
         while done < most and reason == COUNTED:
@@ -224,7 +224,8 @@ class Solver:
         """Compile what this run needs, so that it does not count as running."""
         self._go(asked_of(self, Fixed(1.0, 1)), np.empty(0), 0, self._room, np.empty(1))
         if self.grid is not None:
-            self.stages(self.h, self.q, 1e-3 * self.scene.cells.dx).density.f  # noqa: B018
+            density = self.stages(self.h, self.q, 1e-3 * self.scene.cells.dx).density
+            density.equilibrium(self.h[:1], density.f[:1, 0])
 
     def stages(self, h: Array, q: Array, dt: float, t: float = 0.0, force: bool = True) -> Stages:
         """One step from (h, q) at time t, every stage kept: a march of one step whose tiles have a room each."""
@@ -283,6 +284,12 @@ def ended(clock: AnyClock, solver: Solver) -> bool:
     """Whether the clock has no step left."""
     whole = solver.seen[TICKS] >= clock.ticks and solver.seen[LEFT_OVER] == 0.0
     return bool(whole or solver.t >= clock.until)
+
+
+def read_only(view: Array) -> Array:
+    """A view that nobody can write to."""
+    view.flags.writeable = False
+    return view
 
 
 def lifting_of(bed: Plane | Curve) -> Array:
