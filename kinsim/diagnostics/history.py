@@ -51,7 +51,7 @@ class Cadence:
             self.times = _times(save_at, clock.end)
             self.asked["save_at"] = self.times.tolist()
         elif rows is not None:
-            self.times = np.linspace(0.0, clock.end, rows + 1)[1:]
+            self.times = np.append(clock.end * np.arange(1, rows) / rows, clock.end)
         elif save_every is None and isinstance(clock, Courant):
             self.past = clock.end / ROWS
         elif save_every is None and not isinstance(clock, Courant):

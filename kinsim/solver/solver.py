@@ -225,7 +225,7 @@ class Solver:
         self._go(asked_of(self, Fixed(1.0, 1)), np.empty(0), 0, self._room, np.empty(1))
         if self.grid is not None:
             density = self.stages(self.h, self.q, 1e-3 * self.scene.cells.dx).density
-            density.equilibrium(self.h[:1], density.f[:1, 0])
+            density.equilibrium(self.h, 0.0 * density.f[:, 0])
 
     def stages(self, h: Array, q: Array, dt: float, t: float = 0.0, force: bool = True) -> Stages:
         """One step from (h, q) at time t, every stage kept: a march of one step whose tiles have a room each."""
