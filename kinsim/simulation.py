@@ -120,9 +120,13 @@ class Simulation:
 
     def _hear(self) -> None:
         """End the run if an observer of somebody's own has failed; it keeps all that it has."""
-        failed = next((observer.failure for observer in self.own if observer.failure), "")
-        if failed and self.verdict is None:
-            self.verdict = verdict("observer-failed", f"{failed}; stopped", self.solver, self.history.ledger)
+        if self._failure and self.verdict is None:
+            self.verdict = verdict("observer-failed", f"{self._failure}; stopped", self.solver, self.history.ledger)
+
+    @property
+    def _failure(self) -> str:
+        """What an observer of somebody's own has raised first, in words, or nothing."""
+        return next((observer.failure for observer in self.own if observer.failure), "")
 
     def block(self, most: float = math.inf) -> Block:
         """A block of steps up to where somebody wants to look."""
@@ -162,9 +166,8 @@ class Simulation:
         ended = replace(self.verdict, message=f"{self.verdict.message}; {trouble}") if trouble else self.verdict
         cells = solver.step * self.scene.cells.count
         observed = {observer.name: observer.result() for observer in self.own}
-        late = next((observer.failure for observer in self.own if observer.failure), "")
-        if late and ended.kind != "observer-failed":
-            ended = replace(ended, message=f"{ended.message}; {late}")
+        if self._failure and ended.kind != "observer-failed":
+            ended = replace(ended, message=f"{ended.message}; {self._failure}")
         return Run(
             scene=self.scene, method=self.method, clock=self.clock, t=np.array(history.times),
             h=np.array([h for h, _ in history.states]), q=np.array([q for _, q in history.states]),

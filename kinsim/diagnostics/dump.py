@@ -182,12 +182,12 @@ def recorders(dumps: Sequence[Dump], scene: Scene, method: Kinetic | Macroscopic
             raise InputError(f"two dumps are called {name!r}; give each a name of its own")
     if not dumps:
         return []
-    require_density(method)
+    cells = require_density(method).velocity_cells
     if any(dump.stage == "held" for dump in dumps) and (method.scheme, method.order, method.statics) != (4, 1, "hold"):
         raise InputError('a dump of the stage "held" needs faces that hold: take scheme 4 of order 1')
     made = [Recorder(dump, scene) for dump in dumps]
     for recorder in made:
         rows = recorder.rows(clock.steps if isinstance(clock, Fixed) else 1)
-        width = getattr(getattr(method, "velocity", None), "count", 2)
+        width = getattr(cells, "count", 2)
         require(rows * 8.0 * recorder.width * width, f"{rows} rows of the dump {recorder.dump.name!r}")
     return made

@@ -76,17 +76,12 @@ def ending(block: Block, clock: AnyClock) -> tuple[VerdictKind, str, int | None]
         return "at-rest", "came to rest", None
     if reason == LIFTED:
         return "lifted-off", LIFTED_WORDS, None
+    asked = f"velocities up to {max(solver.counted, solver.fastest):.3g} ask for"
     if reason == TOO_SHORT:
-        asked = (
-            f"velocities up to {max(solver.counted, solver.fastest):.3g} ask for steps of dt = {solver.attempted:.3g}"
-        )
-        return "too-many-steps", f"{asked}, too short to come to t = {end:g}; stopped", None
+        words = f"{asked} steps of dt = {solver.attempted:.3g}, too short to come to t = {end:g}; stopped"
+        return "too-many-steps", words, None
     if block.step >= clock.most:
-        return (
-            "too-many-steps",
-            f"velocities up to {max(solver.counted, solver.fastest):.3g} ask for more than {clock.most} steps; stopped",
-            None,
-        )
+        return "too-many-steps", f"{asked} more than {clock.most} steps; stopped", None
     if reason == COURANT:
         dt, speed = solver.attempted, solver.counted
         if not speed * dt / dx < math.inf:

@@ -251,7 +251,7 @@ def leave_window(shape: Shape, n: int, room: Array) -> bool:
 @routine()
 def counts(kept: Array, room: float, nx: int, seen: Array, dt: float) -> bool:
     """Whether a new state is made of numbers, and so are sums over its cells."""
-    high = max(max(largest(kept, MOST_H), -least(kept)), largest(kept, MOST_Q))
+    high = max(max(largest(kept, MOST_H), -least(kept, LEAST_H)), largest(kept, MOST_Q))
     sums = abs(seen[IN_LEFT_ALL]) + abs(seen[IN_RIGHT_ALL]) + abs(seen[MADE_ALL]) + abs(seen[MENDED_ALL])
     new = abs(kept[0, IN_LEFT]) + abs(kept[kept.shape[0] - 1, IN_RIGHT])
     for tile in range(kept.shape[0]):
@@ -272,10 +272,9 @@ def note(ring: bool, kept: Array, dt: float, dx: float, courant: float, seen: Ar
         seen[IN_RIGHT_ALL] += dt * kept[last, IN_RIGHT]
     seen[MADE_ALL] += dt * made
     seen[MENDED_ALL] += dx * mended
-    seen[H_MIN], seen[U_MAX] = min(seen[H_MIN], least(kept)), max(seen[U_MAX], largest(kept, MOST_U))
+    seen[H_MIN], seen[U_MAX] = min(seen[H_MIN], least(kept, LEAST_H)), max(seen[U_MAX], largest(kept, MOST_U))
     seen[WORST] = max(seen[WORST], courant)
-    for tile in range(last + 1):
-        seen[F_MIN] = min(seen[F_MIN], kept[tile, LEAST_F])
+    seen[F_MIN] = min(seen[F_MIN], least(kept, LEAST_F))
 
 
 @routine()
@@ -304,9 +303,9 @@ def largest(kept: Array, what: int) -> float:
 
 
 @formula()
-def least(kept: Array) -> float:
-    """The least height of all tiles."""
-    low = kept[0, LEAST_H]
+def least(kept: Array, what: int) -> float:
+    """The least of all tiles."""
+    low = kept[0, what]
     for tile in range(1, kept.shape[0]):
-        low = min(low, kept[tile, LEAST_H])
+        low = min(low, kept[tile, what])
     return low

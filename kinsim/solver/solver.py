@@ -105,10 +105,11 @@ class Solver:
         self._fresh, self._dt = True, 0.0
         self._stages: Stages | None = None
         self.attempted, self.seen = 0.0, fresh_seen()
-        self.first_mass = float(np.sum(scene.initial()[0])) * scene.cells.dx
+        h, q = scene.initial()
+        self.first_mass = float(np.sum(h)) * scene.cells.dx
         ahead.begin()
         self._make(scene.fastest)
-        self.put(*scene.initial())
+        self.put(h, q)
 
     def _make(self, reach: float) -> None:
         """The model, with velocity cells for velocities up to `reach`."""
